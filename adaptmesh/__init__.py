@@ -1,0 +1,1 @@
+"""Adaptive anisotropic meshing of planar domains governed by a metric field."""

@@ -1,0 +1,262 @@
+// Topology of a triangulation: triangles, their neighbours, and the moves that change them.
+//
+// This file knows no coordinates (the predicates decide *whether* to move; this file moves) and it
+// is the only writer of adjacency.
+//
+// Local numbering. Triangle (v0, v1, v2) is counter-clockwise; edge i lies opposite vertex i and
+// runs from v[next(i)] to v[prev(i)]; n[i] is the neighbour across it:
+//
+//                 v2
+//                 /\                     .
+//          e1   /    \   e0              .
+//             /        \                 .
+//          v0 ---------- v1
+//                 e2
+//
+// A neighbour is an *edge code*: which triangle, which of its slots, and whether the edge is
+// locked (a constraint, never flipped). NONE (-1) is the outside; its lock bit is set, so the
+// border of the triangulation counts as locked without being asked about.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace adaptmesh {
+
+using Index = std::int32_t;
+
+constexpr Index NONE = -1;
+constexpr Index GHOST = -1;  // the vertex at infinity, while a triangulation has one
+
+constexpr int next(int i) { return i == 2 ? 0 : i + 1; }
+constexpr int prev(int i) { return i == 0 ? 2 : i - 1; }
+
+constexpr Index LOCK_BIT = 4;
+constexpr Index edge_code(Index triangle, int slot) { return triangle << 3 | slot; }
+constexpr Index triangle_of(Index code) { return code >> 3; }
+constexpr int slot_of(Index code) { return code & 3; }
+constexpr bool is_locked(Index code) { return (code & LOCK_BIT) != 0; }
+constexpr Index unlocked(Index code) { return code & ~LOCK_BIT; }
+
+// 2^28 triangles: what an edge code of 31 bits can number.
+constexpr Index MAX_TRIANGLES = Index(1) << 28;
+
+struct Triangle {
+    Index v[3];
+    Index n[3];
+    std::uint32_t stamp = 0;  // visit mark of searches, see Triangulation::new_stamp
+    Index label = 0;          // region, or a mark of the algorithm at work
+
+    int slot_of_vertex(Index vertex) const { return v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2; }
+};
+
+// A triangle and the slot in it: of an edge, or of a vertex.
+struct Place {
+    Index triangle;
+    int slot;
+};
+
+class Triangulation {
+  public:
+    std::vector<Triangle> triangles;
+
+    Index triangle_count() const { return Index(triangles.size()); }
+    Index vertex_count() const { return Index(triangle_at_.size()) - 1; }
+
+    // One triangle that has the vertex (which one is not promised); NONE for a vertex without any.
+    Index triangle_at(Index vertex) const { return triangle_at_[vertex + 1]; }
+    void set_triangle_at(Index vertex, Index triangle) { triangle_at_[vertex + 1] = triangle; }
+
+    Index add_vertex() {
+        triangle_at_.push_back(NONE);
+        return vertex_count() - 1;
+    }
+    void reserve(Index vertices) {
+        triangle_at_.reserve(vertices + 1);
+        triangles.reserve(2 * std::size_t(vertices) + 2);
+    }
+
+    Index add_triangle(Index a, Index b, Index c) {
+        Triangle t;
+        t.v[0] = a, t.v[1] = b, t.v[2] = c;
+        t.n[0] = t.n[1] = t.n[2] = NONE;
+        triangles.push_back(t);
+        const Index k = triangle_count() - 1;
+        for (Index vertex : t.v) set_triangle_at(vertex, k);
+        return k;
+    }
+
+    // Makes `code` the neighbour across edge `slot` of triangle `t`, and back; the lock bit of
+    // `code` is kept on both sides.
+    void link(Index t, int slot, Index code) {
+        triangles[t].n[slot] = code;
+        if (code != NONE) {
+            triangles[triangle_of(code)].n[slot_of(code)] = edge_code(t, slot) | (code & LOCK_BIT);
+        }
+    }
+
+    void lock(Place edge) {
+        const Index code = triangles[edge.triangle].n[edge.slot];
+        if (code != NONE) link(edge.triangle, edge.slot, code | LOCK_BIT);
+    }
+
+    // Exchanges the diagonal of the quadrilateral around edge `e` of triangle t.
+    //
+    //         c                    c
+    //        /|\                  / \            t = (a, b, c), u = (d, c, b) become
+    //       / | \                / u \           t = (a, b, d), u = (d, c, a);
+    //      a t|u d    ->        a-----d          the new edge is slot 1 of both.
+    //       \ | /                \ t /
+    //        \|/                  \ /
+    //         b                    b
+    void flip(Place edge) {
+        const Index t = edge.triangle;
+        Triangle& T = triangles[t];
+        const int e = edge.slot;
+        const Index u = triangle_of(T.n[e]);
+        const int f = slot_of(T.n[e]);
+        Triangle& U = triangles[u];
+
+        const Index a = T.v[e], b = T.v[next(e)], c = T.v[prev(e)], d = U.v[f];
+        const Index ca = T.n[next(e)], ab = T.n[prev(e)];
+        const Index bd = U.n[next(f)], dc = U.n[prev(f)];
+
+        T.v[0] = a, T.v[1] = b, T.v[2] = d;
+        U.v[0] = d, U.v[1] = c, U.v[2] = a;
+        link(t, 0, bd);
+        link(t, 2, ab);
+        link(u, 0, ca);
+        link(u, 2, dc);
+        link(t, 1, edge_code(u, 1));
+        set_triangle_at(a, t), set_triangle_at(b, t);
+        set_triangle_at(c, u), set_triangle_at(d, u);
+    }
+
+    // Puts vertex p strictly inside triangle t:
+    //
+    //            c
+    //           /|\              t = (a, b, c) becomes
+    //          / | \             t = (p, b, c), the two new ones are
+    //         / .p. \            (p, c, a) and (p, a, b), returned in that order.
+    //        /.     .\           Slot 0 of each is the edge opposite p.
+    //       a---------b
+    std::array<Index, 2> split_triangle(Index t, Index p) {
+        const Triangle old = triangles[t];
+        const Index a = old.v[0], b = old.v[1], c = old.v[2];
+        const Index t1 = add_triangle(p, c, a);
+        const Index t2 = add_triangle(p, a, b);
+        Triangle& T = triangles[t];
+        T.v[0] = p;
+        triangles[t1].label = triangles[t2].label = old.label;
+        link(t1, 0, old.n[1]);
+        link(t2, 0, old.n[2]);
+        link(t, 1, edge_code(t1, 2));
+        link(t1, 1, edge_code(t2, 2));
+        link(t2, 1, edge_code(t, 2));
+        set_triangle_at(p, t), set_triangle_at(b, t), set_triangle_at(c, t);
+        return {t1, t2};
+    }
+
+    // Puts vertex p on edge `e` of triangle t. The two halves inherit the lock of the edge.
+    //
+    //         c                    c
+    //        /|\                  /|\            t = (a, b, c) becomes (a, b, p), t2 = (a, p, c);
+    //       / | \                /t2|u\          across, u = (d, c, b) becomes (d, c, p),
+    //      a t|u d    ->        a---p---d        u2 = (d, p, b). The edge opposite p is slot 2 in
+    //       \ | /                \ t|u2/         t and u, slot 1 in t2 and u2.
+    //        \|/                  \|/
+    //         b                    b            Returns {t2, u2}; u2 = NONE on the border.
+    std::array<Index, 2> split_edge(Place edge, Index p) {
+        const Index t = edge.triangle;
+        const int e = edge.slot;
+        const Triangle old = triangles[t];
+        const Index a = old.v[e], b = old.v[next(e)], c = old.v[prev(e)];
+        const Index across = old.n[e];
+        const Index lock = across == NONE ? 0 : across & LOCK_BIT;
+
+        const Index t2 = add_triangle(a, p, c);
+        Triangle& T = triangles[t];
+        T.v[0] = a, T.v[1] = b, T.v[2] = p;
+        T.n[0] = NONE;
+        triangles[t2].label = old.label;
+        link(t, 2, old.n[prev(e)]);
+        link(t2, 1, old.n[next(e)]);
+        link(t, 1, edge_code(t2, 2));
+        set_triangle_at(a, t), set_triangle_at(b, t), set_triangle_at(c, t2), set_triangle_at(p, t);
+        if (across == NONE) return {t2, NONE};
+
+        const Index u = triangle_of(across);
+        const int f = slot_of(across);
+        const Triangle far = triangles[u];
+        const Index d = far.v[f];
+        const Index u2 = add_triangle(d, p, b);
+        Triangle& U = triangles[u];
+        U.v[0] = d, U.v[1] = c, U.v[2] = p;
+        triangles[u2].label = far.label;
+        link(u, 2, far.n[prev(f)]);
+        link(u2, 1, far.n[next(f)]);
+        link(u, 1, edge_code(u2, 2));
+        link(u, 0, edge_code(t2, 0) | lock);
+        link(u2, 0, edge_code(t, 0) | lock);
+        set_triangle_at(d, u), set_triangle_at(b, t), set_triangle_at(p, t);
+        return {t2, u2};
+    }
+
+    // The triangles around a vertex, counter-clockwise, each with the slot of the vertex in it;
+    // starts at the border if the vertex is on it. Returns whether the ball is closed.
+    //
+    //   turning counter-clockwise about v leaves a triangle by the edge to its prev vertex, which
+    //   is opposite next(slot); clockwise by the edge opposite prev(slot).
+    bool ball(Index vertex, std::vector<Place>& places) const {
+        places.clear();
+        const Index home = triangle_at(vertex);
+        Index start = home;
+        bool closed = true;
+        for (Index k = home;;) {
+            const Triangle& T = triangles[k];
+            const Index code = T.n[prev(T.slot_of_vertex(vertex))];
+            if (code == NONE) {
+                closed = false;
+                start = k;
+                break;
+            }
+            k = triangle_of(code);
+            if (k == home) break;
+        }
+        for (Index k = start;;) {
+            const Triangle& T = triangles[k];
+            const int i = T.slot_of_vertex(vertex);
+            places.push_back({k, i});
+            const Index code = T.n[next(i)];
+            if (code == NONE) break;
+            k = triangle_of(code);
+            if (k == start) break;
+        }
+        return closed;
+    }
+
+    // The edge from a to b as an edge of the triangle on its left; triangle NONE if there is none.
+    Place find_edge(Index a, Index b, std::vector<Place>& scratch) const {
+        ball(a, scratch);
+        for (Place p : scratch) {
+            if (triangles[p.triangle].v[next(p.slot)] == b) return {p.triangle, prev(p.slot)};
+        }
+        return {NONE, 0};
+    }
+
+    // A visit mark no triangle bears.
+    std::uint32_t new_stamp() {
+        if (++stamp_ == 0) {  // wrapped after 2^32 searches
+            for (Triangle& t : triangles) t.stamp = 0;
+            stamp_ = 1;
+        }
+        return stamp_;
+    }
+
+  private:
+    std::vector<Index> triangle_at_ = {NONE};  // shifted by one: the ghost vertex has a place too
+    std::uint32_t stamp_ = 0;
+};
+
+}  // namespace adaptmesh

@@ -1,0 +1,19 @@
+"""The errors that this package raises on purpose; each message names the item and the remedy."""
+
+from __future__ import annotations
+
+from metrics.errors import AdaptmeshError, MetricError
+
+__all__ = ["AdaptmeshError", "BudgetError", "DomainError", "FormatError", "MetricError"]
+
+
+class DomainError(AdaptmeshError, ValueError):
+    """A domain that cannot be meshed as it is: where it is wrong, and what to do."""
+
+
+class BudgetError(AdaptmeshError):
+    """The mesh asked for would be larger than allowed; the message holds the prediction."""
+
+
+class FormatError(AdaptmeshError, OSError):
+    """A file that cannot be read or written: which one, where, and why."""

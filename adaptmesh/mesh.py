@@ -1,0 +1,120 @@
+"""What comes out: a triangle mesh with its constrained edges, regions and names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from .domain import Domain
+    from .validate import Validity
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+
+def _frozen(array: ArrayLike, dtype: type, shape: tuple[int, ...]) -> NDArray[np.generic]:
+    out = np.array(array, dtype=dtype, order="C").reshape(shape)
+    out.flags.writeable = False
+    return out
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Mesh:
+    """A conforming triangle mesh; it never changes.
+
+    Parameters
+    ----------
+    points : (n, 2) array of float
+        The vertices.
+    triangles : (m, 3) array of int32
+        Counter-clockwise vertex numbers, from 0.
+    regions : (m,) array of int32, optional
+        Region of each triangle, 0 where it has no name; see `region_names`.
+    edges : (k, 2) array of int32, optional
+        The constrained edges: the boundary and the internal lines of the domain.
+    edge_tags : (k,) array of int32, optional
+        Tag of each constrained edge, 0 where it has no name; see `names`.
+    names : mapping of str to int, optional
+        Edge tag of each named boundary or line.
+    region_names : mapping of str to int, optional
+        Region number of each named region.
+    domain : Domain, optional
+        What was meshed. `adapt` meshes it again; a mesh without one (read from a file) gets it
+        from its constrained edges.
+    """
+
+    points: Floats
+    triangles: Ints
+    regions: Ints = field(default_factory=lambda: np.empty(0, np.int32))
+    edges: Ints = field(default_factory=lambda: np.empty((0, 2), np.int32))
+    edge_tags: Ints = field(default_factory=lambda: np.empty(0, np.int32))
+    names: Mapping[str, int] = field(default_factory=dict)
+    region_names: Mapping[str, int] = field(default_factory=dict)
+    domain: Domain | None = None
+
+    def __post_init__(self) -> None:
+        def put(name: str, value: object) -> None:
+            object.__setattr__(self, name, value)
+
+        put("points", _frozen(self.points, np.float64, (-1, 2)))
+        put("triangles", _frozen(self.triangles, np.int32, (-1, 3)))
+        put("edges", _frozen(self.edges, np.int32, (-1, 2)))
+        regions = self.regions if np.size(self.regions) else np.zeros(len(self.triangles))
+        put("regions", _frozen(regions, np.int32, (len(self.triangles),)))
+        tags = self.edge_tags if np.size(self.edge_tags) else np.zeros(len(self.edges))
+        put("edge_tags", _frozen(tags, np.int32, (len(self.edges),)))
+        put("names", MappingProxyType(dict(self.names)))
+        put("region_names", MappingProxyType(dict(self.region_names)))
+
+    def __repr__(self) -> str:
+        names = ", ".join([*self.names, *self.region_names])
+        return (
+            f"<Mesh: {len(self.points)} points, {len(self.triangles)} triangles, "
+            f"{len(self.edges)} constrained edges{'; ' + names if names else ''}>"
+        )
+
+    @cached_property
+    def unique_edges(self) -> Ints:
+        """All edges of the triangles once, (e, 2), smaller vertex number first, sorted."""
+        t = self.triangles
+        sides = np.sort(np.concatenate([t[:, [1, 2]], t[:, [2, 0]], t[:, [0, 1]]]), axis=1)
+        keys = np.unique(sides[:, 0].astype(np.int64) * len(self.points) + sides[:, 1])
+        n = max(len(self.points), 1)
+        return np.stack([keys // n, keys % n], axis=1).astype(np.int32)
+
+    @cached_property
+    def areas(self) -> Floats:
+        """Area of each triangle, (m,)."""
+        p = self.points[self.triangles]
+        u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+        out: Floats = 0.5 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+        return out
+
+    def edges_named(self, name: str) -> Ints:
+        """The constrained edges that bear a name, (j, 2)."""
+        return self.edges[self.edge_tags == _look_up(self.names, name, "edge")]
+
+    def triangles_in(self, region: str) -> Ints:
+        """Numbers of the triangles of a named region, (j,)."""
+        number = _look_up(self.region_names, region, "region")
+        return np.flatnonzero(self.regions == number).astype(np.int32)
+
+    def validate(self) -> Validity:
+        """Check every invariant of a mesh by name; see `adaptmesh.validate`."""
+        from .validate import validate
+
+        return validate(self)
+
+
+def _look_up(names: Mapping[str, int], name: str, kind: str) -> int:
+    if name not in names:
+        known = ", ".join(map(repr, names)) or "none"
+        raise KeyError(f"no {kind} is named {name!r}; the names are: {known}")
+    return names[name]

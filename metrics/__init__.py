@@ -1,0 +1,1 @@
+"""The control space: how long is this edge, here?"""
