@@ -1,0 +1,3 @@
+#include "adaptmesh/core/bindings.hpp"
+
+void bind_mesher(nb::module_&) {}
