@@ -45,8 +45,9 @@ constexpr Index MAX_TRIANGLES = Index(1) << 28;
 struct Triangle {
     Index v[3];
     Index n[3];
-    std::uint32_t stamp = 0;  // visit mark of searches, see Triangulation::new_stamp
-    Index label = 0;          // region, or a mark of the algorithm at work
+    std::uint32_t stamp : 31;  // visit mark of searches, see Triangulation::new_stamp
+    std::uint32_t fresh : 1;   // changed since the mark was last cleared
+    Index label;               // region, or a mark of the algorithm at work
 
     int slot_of_vertex(Index vertex) const { return v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2; }
 };
@@ -78,10 +79,7 @@ class Triangulation {
     }
 
     Index add_triangle(Index a, Index b, Index c) {
-        Triangle t;
-        t.v[0] = a, t.v[1] = b, t.v[2] = c;
-        t.n[0] = t.n[1] = t.n[2] = NONE;
-        triangles.push_back(t);
+        triangles.push_back({{a, b, c}, {NONE, NONE, NONE}, 0, 1, 0});
         const Index k = triangle_count() - 1;
         for (Index vertex : t.v) set_triangle_at(vertex, k);
         return k;
@@ -124,6 +122,7 @@ class Triangulation {
 
         T.v[0] = a, T.v[1] = b, T.v[2] = d;
         U.v[0] = d, U.v[1] = c, U.v[2] = a;
+        T.fresh = U.fresh = 1;
         link(t, 0, bd);
         link(t, 2, ab);
         link(u, 0, ca);
@@ -148,6 +147,7 @@ class Triangulation {
         const Index t2 = add_triangle(p, a, b);
         Triangle& T = triangles[t];
         T.v[0] = p;
+        T.fresh = 1;
         triangles[t1].label = triangles[t2].label = old.label;
         link(t1, 0, old.n[1]);
         link(t2, 0, old.n[2]);
@@ -179,6 +179,7 @@ class Triangulation {
         Triangle& T = triangles[t];
         T.v[0] = a, T.v[1] = b, T.v[2] = p;
         T.n[0] = NONE;
+        T.fresh = 1;
         triangles[t2].label = old.label;
         link(t, 2, old.n[prev(e)]);
         link(t2, 1, old.n[next(e)]);
@@ -193,6 +194,7 @@ class Triangulation {
         const Index u2 = add_triangle(d, p, b);
         Triangle& U = triangles[u];
         U.v[0] = d, U.v[1] = c, U.v[2] = p;
+        U.fresh = 1;
         triangles[u2].label = far.label;
         link(u, 2, far.n[prev(f)]);
         link(u2, 1, far.n[next(f)]);
@@ -247,7 +249,7 @@ class Triangulation {
 
     // A visit mark no triangle bears.
     std::uint32_t new_stamp() {
-        if (++stamp_ == 0) {  // wrapped after 2^32 searches
+        if (++stamp_ == std::uint32_t(1) << 31) {  // wrapped
             for (Triangle& t : triangles) t.stamp = 0;
             stamp_ = 1;
         }
