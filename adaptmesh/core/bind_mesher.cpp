@@ -1,3 +1,200 @@
+// The mesher as Python sees it: stages that work on the mesh in place, and arrays in and out.
 #include "adaptmesh/core/bindings.hpp"
+#include "adaptmesh/core/edges.hpp"
+#include "adaptmesh/core/metric_mesh.hpp"
+#include "adaptmesh/core/smooth.hpp"
+#include "adaptmesh/core/swap.hpp"
+#include "adaptmesh/core/triangulate.hpp"
 
-void bind_mesher(nb::module_&) {}
+using namespace adaptmesh;
+
+namespace {
+
+Tensor tensor_in(const Tensors& array, std::size_t i) {
+    return {array(i, 0), array(i, 1), array(i, 2)};
+}
+
+void expect_rows(std::size_t got, std::size_t wanted, const char* what) {
+    if (got != wanted) {
+        throw nb::value_error((std::string(what) + ": " + std::to_string(got) + " rows, expected " +
+                               std::to_string(wanted)).c_str());
+    }
+}
+
+void feed(EdgeSampler& sampler, const Tensors& tensors) {
+    expect_rows(tensors.shape(0), sampler.wanted_count(), "tensors at the wanted points");
+    nb::gil_scoped_release release;
+    sampler.feed([&](std::size_t i) { return tensor_in(tensors, i); });
+}
+
+nb::object wanted(const EdgeSampler& sampler) {
+    const std::size_t n = sampler.wanted_count();
+    return to_numpy(sampler.wanted(), {n, 2});
+}
+
+// Straight lines between two points each, to be cut into unit pieces.
+EdgeSampler sampler_of(const Points& starts, const Tensors& start_tensors, const Points& ends,
+                       const Tensors& end_tensors) {
+    const std::size_t n = starts.shape(0);
+    expect_rows(start_tensors.shape(0), n, "start tensors");
+    expect_rows(ends.shape(0), n, "ends");
+    expect_rows(end_tensors.shape(0), n, "end tensors");
+    EdgeSampler sampler;
+    for (std::size_t i = 0; i < n; ++i) {
+        sampler.add({starts(i, 0), starts(i, 1)}, tensor_in(start_tensors, i),
+                    {ends(i, 0), ends(i, 1)}, tensor_in(end_tensors, i));
+    }
+    return sampler;
+}
+
+nb::tuple cut_into(const EdgeSampler& sampler, const Indices& parts) {
+    expect_rows(parts.shape(0), std::size_t(sampler.edge_count()), "parts");
+    const std::vector<FieldPoint> cuts = sampler.cut([&](Index edge, double) { return parts(edge); });
+    std::vector<double> points;
+    std::vector<Index> edges;
+    for (const FieldPoint& p : cuts) {
+        points.push_back(p.at.x), points.push_back(p.at.y);
+        edges.push_back(p.edge);
+    }
+    return nb::make_tuple(to_numpy(std::move(points), {cuts.size(), 2}),
+                          to_numpy(std::move(edges), {cuts.size()}));
+}
+
+class Mesher {
+  public:
+    // A constrained Delaunay triangulation of the outline; `held_by` per point: FIXED or the segment
+    // it may slide along.
+    Mesher(const Points& points, const Tensors& tensors, const Indices& held_by,
+           const IndexPairs& segments, const Points& holes, const Points& seeds, bool nesting) {
+        const std::size_t n = points.shape(0);
+        expect_rows(tensors.shape(0), n, "tensors");
+        expect_rows(held_by.shape(0), n, "held_by");
+        std::vector<Point> at(n);
+        for (std::size_t i = 0; i < n; ++i) at[i] = {points(i, 0), points(i, 1)};
+        const auto pairs = segments_of(segments);
+        const auto hole_points = points_of(holes), seed_points = points_of(seeds);
+
+        nb::gil_scoped_release release;
+        ConstrainedTriangulation outline =
+            triangulate(at, pairs, hole_points, seed_points, nesting, poll_);
+        mesh_.topology = std::move(outline.triangulation);
+        constrained_ = std::move(outline.sub_edges);
+        for (std::size_t i = 0; i < n; ++i)
+            mesh_.vertices.push_back(Vertex::make(at[i], tensor_in(tensors, i), held_by(i)));
+    }
+
+    std::size_t vertex_count() const { return mesh_.vertices.size(); }
+
+    FreshEdges fresh_edges() {
+        nb::gil_scoped_release release;
+        return take_fresh_edges(mesh_);
+    }
+
+    Index insert_along_edges(const FreshEdges& edges, double long_edge, double spacing,
+                             Index most_vertices) {
+        nb::gil_scoped_release release;
+        return adaptmesh::insert_along_edges(mesh_, edges, {long_edge, spacing}, most_vertices, poll_);
+    }
+
+    Index swap() {
+        nb::gil_scoped_release release;
+        return swap_everywhere(mesh_, DelaunayCriterion{}, 5, poll_);
+    }
+
+    Index swap_worst(double below) {
+        nb::gil_scoped_release release;
+        return swap_everywhere(mesh_, QualityCriterion{below}, 3, poll_);
+    }
+
+    Index smooth() {
+        nb::gil_scoped_release release;
+        return smooth_everywhere(mesh_, poll_);
+    }
+
+    // Positions and metrics of the vertices from number `first` on.
+    nb::object points(std::size_t first) const {
+        std::vector<double> out;
+        for (std::size_t v = first; v < vertex_count(); ++v) {
+            out.push_back(mesh_.vertices[v].at.x), out.push_back(mesh_.vertices[v].at.y);
+        }
+        const std::size_t n = out.size() / 2;
+        return to_numpy(std::move(out), {n, 2});
+    }
+
+    void set_metrics(std::size_t first, const Tensors& tensors) {
+        expect_rows(tensors.shape(0), vertex_count() - first, "tensors");
+        for (std::size_t v = first; v < vertex_count(); ++v) {
+            Vertex& vertex = mesh_.vertices[v];
+            vertex = Vertex::make(vertex.at, tensor_in(tensors, v - first), vertex.held_by);
+        }
+    }
+
+    nb::object triangles() const {
+        std::vector<Index> out;
+        for (const Triangle& t : mesh_.topology.triangles) out.insert(out.end(), t.v, t.v + 3);
+        const std::size_t n = out.size() / 3;
+        return to_numpy(std::move(out), {n, 3});
+    }
+
+    nb::object labels() const {
+        std::vector<Index> out;
+        for (const Triangle& t : mesh_.topology.triangles) out.push_back(t.label);
+        const std::size_t n = out.size();
+        return to_numpy(std::move(out), {n});
+    }
+
+    // The constrained edges, and the segment of the outline that each lies on.
+    nb::tuple constrained_edges() const {
+        std::vector<Index> edges, owners;
+        for (const SubEdge& e : constrained_) {
+            edges.push_back(e.a), edges.push_back(e.b);
+            owners.push_back(e.segment);
+        }
+        const std::size_t n = owners.size();
+        return nb::make_tuple(to_numpy(std::move(edges), {n, 2}), to_numpy(std::move(owners), {n}));
+    }
+
+  private:
+    MetricMesh mesh_;
+    std::vector<SubEdge> constrained_;
+    SignalPoll poll_;
+};
+
+}  // namespace
+
+void bind_mesher(nb::module_& m) {
+    nb::class_<EdgeSampler>(m, "EdgeSampler",
+                            "Measures edges by asking for the metric, and cuts them.")
+        .def("wanted", &wanted, "Points (n, 2) where the metric is wanted next; none: done.")
+        .def("feed", &feed, nb::arg("tensors"), "The metric (n, 3) at the wanted points.")
+        .def("lengths", [](const EdgeSampler& s) {
+            auto lengths = s.lengths();
+            const std::size_t n = lengths.size();
+            return to_numpy(std::move(lengths), {n});
+        })
+        .def("cut", &cut_into, nb::arg("parts"),
+             "Points that cut edge i into parts[i] equal metric shares, and the edge of each.");
+    m.def("edge_sampler", &sampler_of, nb::arg("starts"), nb::arg("start_tensors"), nb::arg("ends"),
+          nb::arg("end_tensors"));
+
+    nb::class_<FreshEdges>(m, "FreshEdges").def_ro("sampler", &FreshEdges::sampler);
+
+    nb::class_<Mesher>(m, "Mesher", "A metric mesh and the stages that improve it, in place.")
+        .def(nb::init<const Points&, const Tensors&, const Indices&, const IndexPairs&, const Points&,
+                      const Points&, bool>(),
+             nb::arg("points"), nb::arg("tensors"), nb::arg("held_by"), nb::arg("segments"),
+             nb::arg("holes"), nb::arg("seeds"), nb::arg("nesting"))
+        .def_prop_ro("vertex_count", &Mesher::vertex_count)
+        .def("fresh_edges", &Mesher::fresh_edges)
+        .def("insert_along_edges", &Mesher::insert_along_edges, nb::arg("edges"),
+             nb::arg("long_edge"), nb::arg("spacing"), nb::arg("most_vertices"))
+        .def("swap", &Mesher::swap)
+        .def("swap_worst", &Mesher::swap_worst, nb::arg("below"))
+        .def("smooth", &Mesher::smooth)
+        .def("points", &Mesher::points, nb::arg("first") = 0)
+        .def("set_metrics", &Mesher::set_metrics, nb::arg("first"), nb::arg("tensors"))
+        .def("triangles", &Mesher::triangles)
+        .def("labels", &Mesher::labels)
+        .def("constrained_edges", &Mesher::constrained_edges);
+    m.attr("FIXED") = FIXED;
+}

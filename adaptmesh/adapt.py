@@ -1,0 +1,54 @@
+"""A mesh and a metric on it: the domain of the mesh, meshed again."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import metrics
+import numpy as np
+from metrics import ControlSpace
+
+from .domain import Domain
+from .generate import Progress, generate
+from .mesh import Mesh
+
+
+def adapt(
+    mesh: Mesh,
+    metric: Any,
+    *,
+    placement: str = "edges",
+    max_vertices: int = 5_000_000,
+    progress: Progress | None = None,
+) -> Mesh:
+    """Mesh the domain of a mesh again, for a metric given at its vertices.
+
+    The domain, its names and its regions are kept; no vertex is, but for its corners. The old mesh
+    carries the metric (P1, log-Euclidean) while the new one is made.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        If it has no `Mesh.domain` (it was read from a file), `Domain.of_mesh` finds it.
+    metric : array_like, number, callable, or control space
+        Values at the vertices: sizes (n,), packed metrics (n, 3) = (m11, m12, m22), or tensors
+        (n, 2, 2); or anything else that `generate` takes.
+    placement, max_vertices, progress
+        As in `generate`.
+
+    Returns
+    -------
+    Mesh
+    """
+    domain = mesh.domain or Domain.of_mesh(mesh)
+    field = control_space_on(mesh, metric)
+    return generate(
+        domain, field, placement=placement, max_vertices=max_vertices, progress=progress
+    )
+
+
+def control_space_on(mesh: Mesh, metric: Any) -> ControlSpace:
+    """A control space from values at the vertices of a mesh, or from anything `generate` takes."""
+    if callable(metric) or np.ndim(metric) == 0:
+        return metrics.as_control_space(metric)
+    return metrics.Background(mesh.points, mesh.triangles, metric)

@@ -1,0 +1,170 @@
+// How long is an edge, and where are its unit points, when the metric is known only by asking?
+//
+// The metric lives in Python and answers for whole arrays of points. So the sampler *asks in
+// rounds*: it hands out the midpoints of all chords it is not sure of, is fed the metrics there,
+// splits the chords that still disagree with their halves, and so on until none is left. Then every
+// edge is a row of pieces, each with its length and the speed |e|_M at both ends.
+//
+//        A-----------------B      chord: length by its ends, l(A, B)
+//        A--------M--------B      fed with M: l(A, M) + l(M, B); both agree -> two pieces,
+//                                 else two chords, asked about in the next round
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "adaptmesh/core/point.hpp"
+#include "adaptmesh/core/triangulation.hpp"
+#include "metrics/core/tensor.hpp"
+
+namespace adaptmesh {
+
+using metrics::Tensor;
+
+// A point at a unit distance along an edge, with the metric interpolated there.
+struct FieldPoint {
+    Point at;
+    Tensor metric;
+    Index edge;
+};
+
+class EdgeSampler {
+  public:
+    // A chord is trusted when its own length and that of its halves agree to this share (the
+    // halves are then right to about a tenth of it), ...
+    static constexpr double AGREEMENT = 0.05;
+    // ... and it is no longer than this: finer detail would pass unseen between its samples.
+    static constexpr double LONGEST_CHORD = 4.0;
+    // Shorter ones are trusted as they are: they cannot change the count of points.
+    static constexpr double SHORTEST_CHORD = 0.05;
+    static constexpr int DEEPEST = 40;
+
+    void add(Point a, const Tensor& metric_a, Point b, const Tensor& metric_b) {
+        const Index edge = Index(edges_.size());
+        edges_.push_back({a, {b.x - a.x, b.y - a.y}});
+        chords_.push_back({edge, 0, 0.0, 1.0, metric_a, metric_b});
+    }
+
+    Index edge_count() const { return Index(edges_.size()); }
+
+    // Where the metric is wanted next; empty when all edges are measured.
+    std::vector<double> wanted() const {
+        std::vector<double> out;
+        out.reserve(2 * chords_.size());
+        for (const Chord& c : chords_) {
+            const Point p = point(c.edge, 0.5 * (c.t0 + c.t1));
+            out.push_back(p.x), out.push_back(p.y);
+        }
+        return out;
+    }
+    std::size_t wanted_count() const { return chords_.size(); }
+
+    // The metrics at the wanted points, in their order.
+    template <typename TensorAt>
+    void feed(TensorAt&& tensor_at) {
+        std::vector<Chord> unsure;
+        for (std::size_t i = 0; i < chords_.size(); ++i) {
+            const Chord& c = chords_[i];
+            const Tensor middle = tensor_at(i);
+            const double t = 0.5 * (c.t0 + c.t1);
+            const Chord left{c.edge, c.depth + 1, c.t0, t, c.m0, middle};
+            const Chord right{c.edge, c.depth + 1, t, c.t1, middle, c.m1};
+            const double whole = length(c), halves = length(left) + length(right);
+            const bool agree = std::abs(whole - halves) <= AGREEMENT * halves;
+            if ((agree && halves <= LONGEST_CHORD) || halves <= SHORTEST_CHORD ||
+                c.depth >= DEEPEST) {
+                pieces_.push_back(left);
+                pieces_.push_back(right);
+            } else {
+                unsure.push_back(left);
+                unsure.push_back(right);
+            }
+        }
+        chords_.swap(unsure);
+        if (chords_.empty()) finish();
+    }
+
+    // Metric length of each edge, once all are measured.
+    const std::vector<double>& lengths() const { return lengths_; }
+
+    // Cuts every edge that `count(edge, length)` wants in more than one part at equal metric shares.
+    template <typename Count>
+    std::vector<FieldPoint> cut(Count&& count) const {
+        std::vector<FieldPoint> out;
+        for (Index e = 0; e < edge_count(); ++e) {
+            const Index parts = count(e, lengths_[e]);
+            if (parts > 1) cut_edge(e, parts, out);
+        }
+        return out;
+    }
+
+  private:
+    struct Edge {
+        Point from;
+        Point vector;
+    };
+    struct Chord {
+        Index edge;
+        int depth;
+        double t0, t1;
+        Tensor m0, m1;
+    };
+
+    Point point(Index edge, double t) const {
+        const Edge& e = edges_[edge];
+        return {e.from.x + t * e.vector.x, e.from.y + t * e.vector.y};
+    }
+
+    double length(const Chord& c) const {
+        const Point v = edges_[c.edge].vector;
+        const double dt = c.t1 - c.t0;
+        return metrics::length(c.m0, c.m1, dt * v.x, dt * v.y);
+    }
+
+    // Pieces come in the order in which they were trusted: sort them along their edges.
+    void finish() {
+        std::sort(pieces_.begin(), pieces_.end(), [](const Chord& p, const Chord& q) {
+            return p.edge != q.edge ? p.edge < q.edge : p.t0 < q.t0;
+        });
+        first_.assign(edges_.size() + 1, 0);
+        lengths_.assign(edges_.size(), 0.0);
+        for (const Chord& p : pieces_) {
+            ++first_[p.edge + 1];
+            lengths_[p.edge] += length(p);
+        }
+        for (std::size_t e = 0; e < edges_.size(); ++e) first_[e + 1] += first_[e];
+    }
+
+    void cut_edge(Index e, Index parts, std::vector<FieldPoint>& out) const {
+        const double share = lengths_[e] / parts;
+        Index piece = first_[e];
+        double before = 0, here = length(pieces_[piece]);
+        for (Index i = 1; i < parts; ++i) {
+            const double goal = i * share;
+            while (before + here < goal && piece + 1 < first_[e + 1]) {
+                before += here;
+                here = length(pieces_[++piece]);
+            }
+            out.push_back(point_in_piece(pieces_[piece], std::min(1.0, (goal - before) / here)));
+        }
+    }
+
+    // The size is taken to be geometric along a piece: with r the ratio of the speeds at its ends,
+    // the share s of its length is reached at log(1 + s (r - 1)) / log r.
+    FieldPoint point_in_piece(const Chord& p, double share) const {
+        const Point v = edges_[p.edge].vector;
+        const double r = std::sqrt(p.m1.q(v.x, v.y) / p.m0.q(v.x, v.y));
+        const double s =
+            std::abs(r - 1) < 1e-6 ? share : std::log1p(share * (r - 1)) / std::log(r);
+        return {point(p.edge, p.t0 + s * (p.t1 - p.t0)), metrics::log_mean(p.m0, p.m1, s), p.edge};
+    }
+
+    std::vector<Edge> edges_;
+    std::vector<Chord> chords_;  // asked about
+    std::vector<Chord> pieces_;  // trusted
+    std::vector<Index> first_;   // of each edge, in pieces_
+    std::vector<double> lengths_;
+};
+
+}  // namespace adaptmesh

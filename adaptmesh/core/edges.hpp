@@ -1,0 +1,133 @@
+// Field points along edges (Borouchaki and George): every edge longer than unit is cut at equal
+// metric shares, and the points that keep their distance from the mesh are put into it.
+#pragma once
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "adaptmesh/core/edge_sampler.hpp"
+#include "adaptmesh/core/locate.hpp"
+#include "adaptmesh/core/metric_mesh.hpp"
+#include "adaptmesh/core/swap.hpp"
+
+namespace adaptmesh {
+
+struct EdgePlacement {
+    // An edge from this length on is cut: into two it is then nearer to unit than whole.
+    double long_edge = 1.5;
+    // A field point nearer than this to a vertex of the mesh is refused.
+    double spacing = 0.75;
+};
+
+// The interior edges that appeared since the last call, for measuring, and where they are now.
+struct FreshEdges {
+    EdgeSampler sampler;
+    std::vector<Index> triangle;  // one that has the edge
+};
+
+inline FreshEdges take_fresh_edges(MetricMesh& mesh) {
+    FreshEdges out;
+    auto& triangles = mesh.topology.triangles;
+    for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
+        if (!triangles[t].fresh) continue;
+        for (int slot = 0; slot < 3; ++slot) {
+            const Index across = triangles[t].n[slot];
+            // An edge is new only if both its triangles are; each edge is met twice.
+            if (is_locked(across) || triangle_of(across) > t || !triangles[triangle_of(across)].fresh)
+                continue;
+            const Vertex& a = mesh.vertices[triangles[t].v[next(slot)]];
+            const Vertex& b = mesh.vertices[triangles[t].v[prev(slot)]];
+            out.sampler.add(a.at, a.metric, b.at, b.metric);
+            out.triangle.push_back(t);
+        }
+    }
+    for (Triangle& t : triangles) t.fresh = 0;
+    return out;
+}
+
+class PointInserter {
+  public:
+    PointInserter(MetricMesh& mesh, double spacing) : mesh_(mesh), spacing_(spacing) {}
+
+    enum class Outcome { inserted, too_near, on_constraint, not_reached };
+
+    // Tries to put a point into the mesh, walking to it from a triangle near by. The new vertex is
+    // the last one.
+    Outcome insert(Point at, const Tensor& metric, Index from) {
+        const Location where = locate(mesh_.topology, [this](Index v) { return mesh_.at(v); }, at, from);
+        if (where.where == Where::on_vertex) return Outcome::too_near;
+        if (where.where == Where::outside) return Outcome::not_reached;
+        const Place place = where.place();
+        const bool on_edge = where.where == Where::on_edge;
+        if (on_edge && is_locked(mesh_.triangle(place.triangle).n[place.slot]))
+            return Outcome::on_constraint;
+
+        const Vertex p = Vertex::make(at, metric);
+        if (!keeps_distance(p, place.triangle)) return Outcome::too_near;
+
+        const Index v = mesh_.topology.add_vertex();
+        mesh_.vertices.push_back(p);
+        around_.clear();
+        around_.push_back(place.triangle);
+        if (on_edge) {
+            const Index across = triangle_of(mesh_.triangle(place.triangle).n[place.slot]);
+            for (Index t : mesh_.topology.split_edge(place, v)) around_.push_back(t);
+            around_.push_back(across);
+        } else {
+            for (Index t : mesh_.topology.split_triangle(place.triangle, v)) around_.push_back(t);
+        }
+        legalise_around(mesh_, v, around_, DelaunayCriterion{});
+        return Outcome::inserted;
+    }
+
+  private:
+    // Looks at the vertices of the triangles whose circle in the metric of p holds p: those that p
+    // would be joined to. Constraints screen what lies behind them.
+    bool keeps_distance(const Vertex& p, Index home) {
+        auto& triangles = mesh_.topology.triangles;
+        const std::uint32_t stamp = mesh_.topology.new_stamp();
+        cavity_.assign(1, home);
+        triangles[home].stamp = stamp;
+        for (std::size_t i = 0; i < cavity_.size(); ++i) {
+            const Triangle& T = triangles[cavity_[i]];
+            for (int slot = 0; slot < 3; ++slot) {
+                if (MetricMesh::length(p, mesh_.vertices[T.v[slot]]) < spacing_) return false;
+                if (is_locked(T.n[slot])) continue;
+                Triangle& U = triangles[triangle_of(T.n[slot])];
+                if (U.stamp == stamp) continue;
+                U.stamp = stamp;
+                if (MetricMesh::in_circle(p.metric, mesh_.at(U.v[0]), mesh_.at(U.v[1]),
+                                          mesh_.at(U.v[2]), p.at, 0.0))
+                    cavity_.push_back(triangle_of(T.n[slot]));
+            }
+        }
+        return true;
+    }
+
+    MetricMesh& mesh_;
+    double spacing_;
+    std::vector<Index> cavity_;
+    std::vector<Index> around_;
+};
+
+// Puts the field points of the measured edges into the mesh, up to `most_vertices` in all; returns
+// how many it took.
+template <typename Poll>
+Index insert_along_edges(MetricMesh& mesh, const FreshEdges& edges, const EdgePlacement& options,
+                         Index most_vertices, Poll& poll) {
+    const auto parts = [&](Index, double length) {
+        return length < options.long_edge ? Index(1) : Index(std::max(2.0, std::floor(length + 0.5)));
+    };
+    PointInserter inserter(mesh, options.spacing);
+    Index inserted = 0, tried = 0;
+    for (const FieldPoint& p : edges.sampler.cut(parts)) {
+        if (++tried % 1024 == 0) poll();
+        if (Index(mesh.vertices.size()) >= most_vertices) break;
+        inserted += inserter.insert(p.at, p.metric, edges.triangle[p.edge]) ==
+                    PointInserter::Outcome::inserted;
+    }
+    return inserted;
+}
+
+}  // namespace adaptmesh

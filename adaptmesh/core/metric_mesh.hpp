@@ -1,0 +1,85 @@
+// A triangulation whose vertices carry a position and a metric, and what is measured on it.
+//
+// Lengths are closed form: Simpson's rule with the metrics of the two ends and, halfway, their
+// geometric mean (metrics::length). Quality is that of the mean metric of the three vertices.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "adaptmesh/core/point.hpp"
+#include "adaptmesh/core/predicates.hpp"
+#include "adaptmesh/core/triangulation.hpp"
+#include "metrics/core/tensor.hpp"
+
+namespace adaptmesh {
+
+using metrics::Tensor;
+
+// What holds a vertex: nothing, everything, or the segment (its number) it may slide along.
+constexpr Index FREE = -1;
+constexpr Index FIXED = -2;
+
+struct Vertex {
+    Point at;
+    Tensor metric;
+    double sqrt_det;
+    Index held_by;
+
+    static Vertex make(Point at, const Tensor& metric, Index held_by = FREE) {
+        return {at, metric, metrics::sqrt_det(metric), held_by};
+    }
+};
+
+class MetricMesh {
+  public:
+    Triangulation topology;
+    std::vector<Vertex> vertices;
+
+    const Point& at(Index v) const { return vertices[v].at; }
+    const Triangle& triangle(Index t) const { return topology.triangles[t]; }
+
+    double length(Index a, Index b) const { return length(vertices[a], vertices[b]); }
+    static double length(const Vertex& a, const Vertex& b) {
+        return metrics::length(a.metric, a.sqrt_det, b.metric, b.sqrt_det, b.at.x - a.at.x,
+                               b.at.y - a.at.y);
+    }
+
+    double quality(Index t) const {
+        const Triangle& T = triangle(t);
+        return quality(vertices[T.v[0]], vertices[T.v[1]], vertices[T.v[2]]);
+    }
+
+    // 4 sqrt(3) area / (sum of squared sides), measured in the mean metric: 1 for the unit
+    // equilateral triangle; not positive for one that is flat or turned over.
+    static double quality(const Vertex& a, const Vertex& b, const Vertex& c) {
+        const double ux = b.at.x - a.at.x, uy = b.at.y - a.at.y;
+        const double vx = c.at.x - a.at.x, vy = c.at.y - a.at.y;
+        const double area2 = ux * vy - uy * vx;
+        const Tensor m = a.metric + b.metric + c.metric;
+        const double sides = m.q(ux, uy) + m.q(vx, vy) + m.q(vx - ux, vy - uy);
+        return 2 * std::sqrt(3.0) * area2 * metrics::sqrt_det(m) / sides;
+    }
+
+    bool is_positive(Index a, Index b, Index c) const { return orient2d(at(a), at(b), at(c)) > 0; }
+
+    // Whether vertex d lies inside the circle through the counter-clockwise a, b, c in the constant
+    // metric m. With coordinates relative to d and q(u) = u' m u, the sign of
+    //
+    //     | xa ya q(a) |
+    //     | xb yb q(b) |
+    //     | xc yc q(c) |
+    //
+    // No circumcentre, no division. `margin`, relative to the size of the terms, keeps ties apart.
+    static bool in_circle(const Tensor& m, Point a, Point b, Point c, Point d, double margin) {
+        const double ax = a.x - d.x, ay = a.y - d.y;
+        const double bx = b.x - d.x, by = b.y - d.y;
+        const double cx = c.x - d.x, cy = c.y - d.y;
+        const double ta = m.q(ax, ay) * (bx * cy - by * cx);
+        const double tb = m.q(bx, by) * (cx * ay - cy * ax);
+        const double tc = m.q(cx, cy) * (ax * by - ay * bx);
+        return ta + tb + tc > margin * (std::abs(ta) + std::abs(tb) + std::abs(tc));
+    }
+};
+
+}  // namespace adaptmesh

@@ -1,0 +1,187 @@
+// Smoothing: free vertices move to where the edges of their ball are unit and its triangles
+// equilateral, in the metric.
+//
+// While a vertex moves, the metric it would have is read from its own ball: P1 and log-Euclidean
+// on the triangles around the place it started from. The caller evaluates the metric again, exactly,
+// where vertices have come to rest.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "adaptmesh/core/metric_mesh.hpp"
+
+namespace adaptmesh {
+
+// The cost of a ball: (l - 1/l)^2, steepened far from unit, over its edges, and (1/Q - 1)^2 over
+// its triangles.
+struct BallCost {
+    static constexpr double QUALITY_WEIGHT = 0.3;
+    static constexpr double STEEPENING = 4.0;
+
+    static double edge(double length) {
+        const double u = length - 1 / length;
+        return u * u * (1 + STEEPENING * u * u);
+    }
+    static double triangle(double quality) {
+        const double u = 1 / quality - 1;
+        return QUALITY_WEIGHT * u * u;
+    }
+};
+
+class Smoother {
+  public:
+    explicit Smoother(MetricMesh& mesh) : mesh_(mesh), logs_(mesh.vertices.size()) {
+        for (std::size_t v = 0; v < logs_.size(); ++v)
+            logs_[v] = metrics::log_tensor(mesh.vertices[v].metric);
+    }
+
+    // Moves a free vertex towards the mean of the apexes that would make the triangles of its ball
+    // equilateral, as far as the cost of the ball falls; returns whether it moved.
+    bool move_to_ideal(Index v) {
+        if (!gather(v)) return false;
+        const Vertex old = mesh_.vertices[v];
+        const double cost = cost_at(old);
+        Point step = step_to_ideal(old);
+        const double size = std::sqrt(old.metric.q(step.x, step.y));
+        if (size < SHORTEST_STEP) return false;
+        if (size > LONGEST_STEP) step = {step.x * LONGEST_STEP / size, step.y * LONGEST_STEP / size};
+        for (double share : {1.0, 0.4, 0.16}) {
+            if (try_move(v, {old.at.x + share * step.x, old.at.y + share * step.y}, cost)) return true;
+        }
+        return false;
+    }
+
+    // Looks around in six directions, `step` metric units away, and takes the first that lowers the
+    // cost; then once more with half the step. For the few vertices where the ideal is of no help.
+    bool search_around(Index v, double step) {
+        if (!gather(v)) return false;
+        bool moved = false;
+        double cost = cost_at(mesh_.vertices[v]);
+        for (int round = 0; round < 2; ++round, step *= 0.5) {
+            const Vertex here = mesh_.vertices[v];
+            for (int k = 0; k < 6; ++k) {
+                const double angle = (k + 0.5 * round) * (M_PI / 3);
+                const Point d = unit_ball_point(here.metric, std::cos(angle), std::sin(angle));
+                if (try_move(v, {here.at.x + step * d.x, here.at.y + step * d.y}, cost)) {
+                    cost = cost_at(mesh_.vertices[v]);
+                    moved = true;
+                    break;
+                }
+            }
+        }
+        return moved;
+    }
+
+  private:
+    static constexpr double SHORTEST_STEP = 1e-3;  // not worth it, in metric units
+    static constexpr double LONGEST_STEP = 0.5;
+    static constexpr double WORTHWHILE = 0.9999;   // the cost must fall at least to this share
+    static constexpr double FLATTEST = 1e-6;       // quality below which a place is refused
+
+    // The ball of v: sides_[i], sides_[i + 1] are the ends of the edge opposite v in triangle i.
+    bool gather(Index v) {
+        if (mesh_.vertices[v].held_by != FREE) return false;
+        if (mesh_.topology.triangle_at(v) == NONE || !mesh_.topology.ball(v, places_)) return false;
+        sides_.clear();
+        for (Place p : places_) sides_.push_back(mesh_.triangle(p.triangle).v[next(p.slot)]);
+        sides_.push_back(sides_.front());
+        start_ = mesh_.vertices[v].at;
+        start_log_ = logs_[v];
+        return true;
+    }
+
+    double cost_at(const Vertex& p) const {
+        double cost = 0;
+        for (std::size_t i = 0; i + 1 < sides_.size(); ++i) {
+            const Vertex &a = mesh_.vertices[sides_[i]], &b = mesh_.vertices[sides_[i + 1]];
+            const double q = MetricMesh::quality(p, a, b);
+            if (q <= FLATTEST) return INFINITY;
+            cost += BallCost::triangle(q) + BallCost::edge(MetricMesh::length(p, a));
+        }
+        return cost;
+    }
+
+    // For each edge (a, b) of the ball the apex of the equilateral triangle on it, in the mean
+    // metric M: the middle plus sqrt(3)/2 |ab| along the M-orthogonal w, where |w|_M = sqrt(det M)
+    // |ab|_M; bad triangles pull harder.
+    Point step_to_ideal(const Vertex& p) const {
+        double x = 0, y = 0, weights = 0;
+        for (std::size_t i = 0; i + 1 < sides_.size(); ++i) {
+            const Vertex &a = mesh_.vertices[sides_[i]], &b = mesh_.vertices[sides_[i + 1]];
+            const Tensor m = (1.0 / 3) * (a.metric + b.metric + p.metric);
+            const double ex = b.at.x - a.at.x, ey = b.at.y - a.at.y;
+            const double wx = -(m.b * ex + m.c * ey), wy = m.a * ex + m.b * ey;
+            // A side of length 1 is the aim, whatever the length of (a, b).
+            const double height = 0.5 * std::sqrt(3.0) / std::sqrt(m.q(wx, wy));
+            const double weight = 1 / std::max(MetricMesh::quality(p, a, b), 1e-3);
+            x += weight * (0.5 * (a.at.x + b.at.x) + height * wx);
+            y += weight * (0.5 * (a.at.y + b.at.y) + height * wy);
+            weights += weight;
+        }
+        return {x / weights - p.at.x, y / weights - p.at.y};
+    }
+
+    bool try_move(Index v, Point to, double cost) {
+        Tensor log;
+        if (!log_metric(to, log)) return false;
+        const Vertex moved = Vertex::make(to, metrics::exp_tensor(log));
+        if (!(cost_at(moved) < WORTHWHILE * cost) || !is_positive_from(to)) return false;
+        mesh_.vertices[v] = moved;
+        logs_[v] = log;
+        return true;
+    }
+
+    bool is_positive_from(Point p) const {
+        for (std::size_t i = 0; i + 1 < sides_.size(); ++i) {
+            if (orient2d(p, mesh_.at(sides_[i]), mesh_.at(sides_[i + 1])) <= 0) return false;
+        }
+        return true;
+    }
+
+    // P1 interpolation of log M in the ball as it was before the vertex moved; false outside it.
+    bool log_metric(Point p, Tensor& out) const {
+        for (std::size_t i = 0; i + 1 < sides_.size(); ++i) {
+            const Point a = mesh_.at(sides_[i]), b = mesh_.at(sides_[i + 1]);
+            const double ax = a.x - start_.x, ay = a.y - start_.y;
+            const double bx = b.x - start_.x, by = b.y - start_.y;
+            const double px = p.x - start_.x, py = p.y - start_.y;
+            const double area = ax * by - ay * bx;
+            const double wa = (px * by - py * bx) / area, wb = (ax * py - ay * px) / area;
+            if (!(wa >= 0 && wb >= 0 && wa + wb <= 1)) continue;
+            out = (1 - wa - wb) * start_log_ + wa * logs_[sides_[i]] + wb * logs_[sides_[i + 1]];
+            return true;
+        }
+        return false;
+    }
+
+    // The vector of metric length one that the frame of the metric turns (c, s) into: with
+    // M = L L', it is L'^-1 (c, s).
+    static Point unit_ball_point(const Tensor& m, double c, double s) {
+        const double l11 = std::sqrt(m.a), l21 = m.b / l11, l22 = metrics::sqrt_det(m) / l11;
+        const double y = s / l22;
+        return {(c - l21 * y) / l11, y};
+    }
+
+    MetricMesh& mesh_;
+    std::vector<Tensor> logs_;
+    std::vector<Place> places_;
+    std::vector<Index> sides_;
+    Point start_{};
+    Tensor start_log_{};
+};
+
+// One pass of move_to_ideal over all vertices; returns how many moved.
+template <typename Poll>
+Index smooth_everywhere(MetricMesh& mesh, Poll& poll) {
+    Smoother smoother(mesh);
+    Index moved = 0;
+    for (Index v = 0; v < Index(mesh.vertices.size()); ++v) {
+        if (v % 1024 == 0) poll();
+        moved += smoother.move_to_ideal(v);
+    }
+    return moved;
+}
+
+}  // namespace adaptmesh

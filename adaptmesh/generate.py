@@ -1,0 +1,191 @@
+"""From a domain and a metric to a mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import metrics
+import numpy as np
+from metrics import ControlSpace
+
+from . import _core
+from .boundary import Outline, cut_segments, measure_edges
+from .domain import Domain
+from .errors import BudgetError, DomainError
+from .mesh import Mesh
+
+Progress = Callable[[str, float], None]
+
+PLACEMENTS = ("edges",)
+
+
+@dataclass(frozen=True)
+class EdgePlacement:
+    """How field points are put along edges.
+
+    Attributes
+    ----------
+    long_edge : float
+        Metric length from which an edge is cut.
+    spacing : float
+        A field point nearer than this to a vertex is refused, in metric length.
+    """
+
+    long_edge: float = 1.5
+    spacing: float = 0.75
+
+
+@dataclass(frozen=True)
+class Smoothing:
+    """How often vertices are moved, and from which quality on edges are swapped for shape."""
+
+    rounds: int = 3
+    swap_below: float = 0.5
+
+
+def generate(
+    domain: Domain,
+    metric: Any,
+    *,
+    placement: str = "edges",
+    max_vertices: int = 5_000_000,
+    progress: Progress | None = None,
+) -> Mesh:
+    """Mesh a domain so that all edges have unit length in a metric.
+
+    Parameters
+    ----------
+    domain : Domain
+    metric : number, callable, or control space
+        A size h; or a function of an (n, 2) array of points that returns sizes (n,), packed metrics
+        (n, 3) = (m11, m12, m22) or tensors (n, 2, 2); or anything made by `metrics`.
+    placement : {"edges"}
+        How points are placed. ``"edges"``: along edges longer than unit, at equal metric shares
+        (Borouchaki and George).
+    max_vertices : int
+        The largest mesh allowed. More is refused before anything is built, with the prediction.
+    progress : callable, optional
+        Called as ``progress(stage, fraction)`` with the name of the stage at work and how much of
+        all the work is done, from 0 to 1. An exception from it ends the work.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    MetricError
+        The metric is not finite, not positive definite, or has the wrong shape somewhere.
+    BudgetError
+        The mesh would have more than `max_vertices` vertices.
+    """
+    if not isinstance(domain, Domain):
+        raise DomainError(f"a Domain is wanted, not {type(domain).__name__}: see adaptmesh.Domain")
+    if placement not in PLACEMENTS:
+        raise ValueError(f"placement={placement!r} is none of {', '.join(map(repr, PLACEMENTS))}")
+    report = progress or (lambda stage, fraction: None)
+    field = metrics.as_control_space(metric)
+
+    report("predicting the size", 0.0)
+    expected = _check_budget(domain, field, max_vertices)
+    report("cutting the boundary", 0.02)
+    outline = cut_segments(domain, field, max_vertices)
+    mesher = triangulate_outline(domain, outline)
+    report("placing points", 0.05)
+    place_along_edges(mesher, field, EdgePlacement(), max_vertices, expected, report)
+    optimise(mesher, field, Smoothing(), report)
+    report("done", 1.0)
+    return finished_mesh(domain, outline, mesher)
+
+
+def predict(domain: Domain, metric: Any) -> int:
+    """The number of vertices that a mesh of the domain will have, before it is made.
+
+    (2/sqrt 3) C + B/2 + 1, with C the complexity, the integral of sqrt(det M), and B the metric
+    length of the boundary, which a hexagonal lattice of unit edges would have. To about 5 %; fields
+    with features far below their surroundings may hide from it.
+    """
+    field = metrics.as_control_space(metric)
+    complexity = metrics.complexity(domain.points, domain.triangles, field).value
+    return int(np.ceil(2 / np.sqrt(3) * complexity)) + len(domain.points)
+
+
+def _check_budget(domain: Domain, field: ControlSpace, max_vertices: int) -> int:
+    expected = predict(domain, field)
+    if expected > max_vertices:
+        raise BudgetError(
+            f"the mesh would have about {expected:.3g} vertices, but max_vertices is "
+            f"{max_vertices:,}: ask for larger sizes, or allow more"
+        )
+    return expected
+
+
+def triangulate_outline(domain: Domain, outline: Outline) -> _core.Mesher:
+    """The constrained Delaunay triangulation of the cut boundary, without the outside."""
+    return _core.Mesher(
+        outline.points,
+        outline.tensors,
+        outline.held_by,
+        outline.pieces,
+        domain.holes,
+        domain.seeds,
+        domain.nesting,
+    )
+
+
+def place_along_edges(
+    mesher: _core.Mesher,
+    field: ControlSpace,
+    options: EdgePlacement,
+    max_vertices: int,
+    expected: int,
+    report: Progress,
+) -> None:
+    """Cut long edges, sweep after sweep, until none is left that takes a point.
+
+    The points of a sweep are put in with the metric interpolated along their edge; then the metric
+    is evaluated exactly at all of them at once.
+    """
+    while True:
+        before = mesher.vertex_count
+        fresh = mesher.fresh_edges()
+        measure_edges(fresh.sampler, field)
+        mesher.insert_along_edges(fresh, options.long_edge, options.spacing, max_vertices)
+        if mesher.vertex_count == before:
+            return
+        if mesher.vertex_count >= max_vertices:
+            raise BudgetError(
+                f"the mesh has reached max_vertices = {max_vertices:,} and is not yet fine enough "
+                f"(about {expected:,} vertices were predicted): ask for larger sizes, or allow more"
+            )
+        mesher.set_metrics(before, field(mesher.points(before)))
+        report("placing points", 0.05 + 0.65 * min(1.0, mesher.vertex_count / max(expected, 1)))
+
+
+def optimise(
+    mesher: _core.Mesher, field: ControlSpace, options: Smoothing, report: Progress
+) -> None:
+    """Swap edges and move vertices; the metric is exact again after each round."""
+    mesher.swap()
+    for k in range(options.rounds):
+        report("smoothing", 0.7 + 0.3 * k / options.rounds)
+        mesher.smooth()
+        mesher.set_metrics(0, field(mesher.points()))
+        mesher.swap()
+    mesher.swap_worst(options.swap_below)
+
+
+def finished_mesh(domain: Domain, outline: Outline, mesher: _core.Mesher) -> Mesh:
+    edges, piece_segment = mesher.constrained_edges()
+    return Mesh(
+        points=mesher.points(),
+        triangles=mesher.triangles(),
+        regions=domain.region_of_label(mesher.labels()),
+        edges=edges,
+        edge_tags=domain.segment_tags[outline.segment[piece_segment]],
+        names=domain.names,
+        region_names=domain.region_names,
+        domain=domain,
+    )

@@ -1,0 +1,225 @@
+"""The domain that a mesh covers, read back from its constrained edges."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from .domain import Domain
+from .errors import DomainError
+from .mesh import Mesh
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+# Vertices nearer than this share of the extent of the mesh to a straight line lie on it: about what
+# rounding and text files of 12 digits leave of a straight boundary.
+STRAIGHT = 1e-12
+
+
+def domain_of_mesh(mesh: Mesh) -> Domain:
+    """Corners, segments, holes, regions and names of a mesh.
+
+    Chains of constrained edges with one name, between the same two regions, become one segment
+    where they are straight (to `STRAIGHT` of the extent); vertices on them are dropped. Curved
+    boundaries stay as the mesh has them.
+    """
+    if not len(mesh.triangles):
+        raise DomainError("the mesh has no triangles, so it covers no domain")
+    edges, tags = _with_border(mesh)
+    segments, segment_tags = [], []
+    tolerance = STRAIGHT * float(np.ptp(mesh.points, axis=0).max())
+    for chain, tag in _chains(edges, tags, _sides(mesh, edges)):
+        corners = _corners(mesh.points, chain, tolerance)
+        segments += list(zip(corners[:-1], corners[1:], strict=True))
+        segment_tags += [tag] * (len(corners) - 1)
+
+    used, renumbered = np.unique(np.array(segments), return_inverse=True)
+    points, pairs = mesh.points[used], renumbered.reshape(-1, 2)
+    tag_of = np.array(segment_tags)
+    return Domain(
+        points,
+        pairs,
+        holes=_hole_points(mesh, points, pairs),
+        regions=_region_points(mesh, edges),
+        names={name: np.flatnonzero(tag_of == tag).tolist() for name, tag in mesh.names.items()},
+    )
+
+
+def _half_edges(triangles: Ints) -> tuple[Ints, Ints]:
+    """The directed edges of all triangles, (3 m, 2), and the triangle of each."""
+    halves = np.concatenate([triangles[:, [1, 2]], triangles[:, [2, 0]], triangles[:, [0, 1]]])
+    return halves, np.tile(np.arange(len(triangles), dtype=np.int32), 3)
+
+
+def _triangles_beside(triangles: Ints, edges: Ints, n_points: int) -> tuple[Ints, Ints]:
+    """The triangle on the left and on the right of each edge, -1 where there is none."""
+    halves, owner = _half_edges(triangles)
+    keys = halves[:, 0].astype(np.int64) * n_points + halves[:, 1]
+    order = np.argsort(keys)
+    keys, owner = keys[order], owner[order]
+
+    def left_of(a: Ints, b: Ints) -> Ints:
+        wanted = a.astype(np.int64) * n_points + b
+        at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+        return np.where(keys[at] == wanted, owner[at], -1).astype(np.int32)
+
+    return left_of(edges[:, 0], edges[:, 1]), left_of(edges[:, 1], edges[:, 0])
+
+
+def _with_border(mesh: Mesh) -> tuple[Ints, Ints]:
+    """The constrained edges and their tags; border edges that are not among them come with tag 0."""
+    n = len(mesh.points)
+    halves, _ = _half_edges(mesh.triangles)
+    ordered = np.sort(halves, axis=1).astype(np.int64)
+    keys, count = np.unique(ordered[:, 0] * n + ordered[:, 1], return_counts=True)
+    given = np.sort(mesh.edges, axis=1).astype(np.int64)
+    missing = np.setdiff1d(keys[count == 1], given[:, 0] * n + given[:, 1])
+    border = np.stack([missing // n, missing % n], axis=1).astype(np.int32)
+    return (
+        np.concatenate([mesh.edges, border]),
+        np.concatenate([mesh.edge_tags, np.zeros(len(border), np.int32)]),
+    )
+
+
+def _sides(mesh: Mesh, edges: Ints) -> Ints:
+    """The two regions that each edge separates, smaller first, -1 for the outside."""
+    left, right = _triangles_beside(mesh.triangles, edges, len(mesh.points))
+    regions = np.append(mesh.regions, np.int32(-1))
+    return np.sort(np.stack([regions[left], regions[right]], axis=1), axis=1)
+
+
+def _chains(edges: Ints, tags: Ints, sides: Ints) -> Iterator[tuple[list[int], int]]:
+    """Walk the edges in chains of vertices along which the tag and the sides stay the same.
+
+    A chain ends where its vertex has not exactly two such edges; a closed one starts and ends at
+    its lowest vertex number.
+    """
+    at: dict[int, list[int]] = {}
+    for e, (a, b) in enumerate(edges.tolist()):
+        at.setdefault(a, []).append(e)
+        at.setdefault(b, []).append(e)
+    kind = [(int(t), int(s[0]), int(s[1])) for t, s in zip(tags, sides, strict=True)]
+
+    def passes(v: int) -> bool:
+        return len(at[v]) == 2 and kind[at[v][0]] == kind[at[v][1]]
+
+    pairs = edges.tolist()
+    walked = [False] * len(pairs)
+    # Open chains start at their ends; what is left then is closed and may start anywhere.
+    for start in [*(v for v in sorted(at) if not passes(v)), *sorted(at)]:
+        for first in at[start]:
+            if walked[first]:
+                continue
+            chain, e = [start], first
+            while True:
+                walked[e] = True
+                a, b = pairs[e]
+                chain.append(b if chain[-1] == a else a)
+                if chain[-1] == start or not passes(chain[-1]):
+                    break
+                e = next(other for other in at[chain[-1]] if other != e)
+            yield chain, kind[first][0]
+
+
+def _corners(points: Floats, chain: list[int], tolerance: float) -> list[int]:
+    """The vertices of a chain that a polyline within the tolerance needs (Douglas and Peucker)."""
+    closed = chain[0] == chain[-1]
+    if closed:  # open it at an extreme point, which is a corner
+        ring = chain[:-1]
+        k = min(range(len(ring)), key=lambda i: tuple(points[ring[i]]))
+        chain = [*ring[k:], *ring[: k + 1]]
+    keep = {0, len(chain) - 1}
+    p = points[chain]
+    open_parts = [(0, len(chain) - 1)]
+    while open_parts:
+        i, j = open_parts.pop()
+        if j - i < 2:
+            continue
+        k = i + 1 + int(np.argmax(_distances(p[i + 1 : j], p[i], p[j])))
+        if _distances(p[k : k + 1], p[i], p[j])[0] > tolerance:
+            keep.add(k)
+            open_parts += [(i, k), (k, j)]
+    return [chain[k] for k in sorted(keep)]
+
+
+def _distances(p: Floats, a: Floats, b: Floats) -> Floats:
+    """Distances of points from a line, or from a point where the line has no direction."""
+    d, w = b - a, p - a
+    norm = float(np.hypot(*d))
+    if norm == 0.0:
+        return np.hypot(w[:, 0], w[:, 1])
+    out: Floats = np.abs(w[:, 0] * d[1] - w[:, 1] * d[0]) / norm
+    return out
+
+
+def _hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
+    """A point inside every hole: those parts of the filled outline that the mesh does not cover."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    filled, labels, *_ = _core.triangulate(
+        points, segments.astype(np.int32), np.empty((0, 2)), np.empty((0, 2)), False
+    )
+    del labels
+    lower, upper = np.sort(segments, axis=1).T.astype(np.int64)
+    halves, owner = _half_edges(filled)
+    ordered = np.sort(halves, axis=1).astype(np.int64)
+    keys = ordered[:, 0] * len(points) + ordered[:, 1]
+    order = np.argsort(keys, kind="stable")
+    same = np.flatnonzero(keys[order][:-1] == keys[order][1:])
+    open_ = same[~np.isin(keys[order][same], lower * len(points) + upper)]
+    links = owner[order][open_], owner[order][open_ + 1]
+    graph = coo_array((np.ones(len(open_)), links), shape=(len(filled), len(filled)))
+    _, part = connected_components(graph, directed=False)
+
+    # The largest triangle of each part stands for it.
+    p = points[filled]
+    u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    by_area = np.argsort(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])[::-1]
+    _, first = np.unique(part[by_area], return_index=True)
+    centres = p[by_area[first]].mean(axis=1)
+    return centres[~_covered(mesh, centres)]
+
+
+def _covered(mesh: Mesh, places: Floats) -> NDArray[np.bool_]:
+    """Which of the places lie in a triangle of the mesh."""
+    p = mesh.points[mesh.triangles]
+    out = np.zeros(len(places), bool)
+    for i, x in enumerate(places):
+        inside = np.ones(len(p), bool)
+        for k in range(3):
+            a, d = p[:, k], p[:, (k + 1) % 3] - p[:, k]
+            inside &= d[:, 0] * (x[1] - a[:, 1]) - d[:, 1] * (x[0] - a[:, 0]) >= 0
+        out[i] = inside.any()
+    return out
+
+
+def _region_points(mesh: Mesh, edges: Ints) -> dict[str, Floats]:
+    """For each named region a point in each of its parts."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    left, right = _triangles_beside(mesh.triangles, mesh.unique_edges, len(mesh.points))
+    n = len(mesh.points)
+    constrained = np.sort(edges, axis=1).astype(np.int64)
+    all_edges = mesh.unique_edges.astype(np.int64)
+    free = ~np.isin(
+        all_edges[:, 0] * n + all_edges[:, 1], constrained[:, 0] * n + constrained[:, 1]
+    )
+    free &= (left >= 0) & (right >= 0)
+    m = len(mesh.triangles)
+    graph = coo_array((np.ones(free.sum()), (left[free], right[free])), shape=(m, m))
+    _, part = connected_components(graph, directed=False)
+
+    by_area = np.argsort(mesh.areas)[::-1]
+    out: dict[str, Floats] = {}
+    for name, number in mesh.region_names.items():
+        mine = by_area[mesh.regions[by_area] == number]
+        _, first = np.unique(part[mine], return_index=True)
+        if len(first):
+            out[name] = mesh.points[mesh.triangles[mine[first]]].mean(axis=1)
+    return out
