@@ -1,3 +1,235 @@
+// The module metrics._core: arrays in, arrays out, without the interpreter lock.
 #include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 
-NB_MODULE(_core, m) { m.doc() = "The compiled core of metrics."; }
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "metrics/core/background.hpp"
+#include "metrics/core/tensor.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using metrics::Index;
+using metrics::Tensor;
+
+namespace {
+
+using Values = nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Points = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using Tensors = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Matrices = nb::ndarray<const double, nb::shape<-1, 2, 2>, nb::c_contig, nb::device::cpu>;
+using Triangles = nb::ndarray<const Index, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Indices = nb::ndarray<const Index, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+
+// A numpy array in the making: `data` is filled without the lock, `numpy` hands it over.
+template <typename T>
+struct Result {
+    std::size_t rows, columns;  // columns 0: a one-dimensional array
+    T* data;
+    nb::capsule owner;
+
+    explicit Result(std::size_t rows, std::size_t columns = 0)
+        : rows(rows),
+          columns(columns),
+          data(new T[rows * (columns ? columns : 1)]),
+          owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); }) {}
+
+    nb::object numpy() const {
+        const std::size_t shape[2] = {rows, columns};
+        return nb::cast(nb::ndarray<nb::numpy, T>(data, columns ? 2 : 1, shape, owner));
+    }
+};
+
+Tensor load(const double* p) {
+    return {p[0], p[1], p[2]};
+}
+void store(double* p, Tensor t) {
+    p[0] = t.a, p[1] = t.b, p[2] = t.c;
+}
+
+void require(bool condition, const char* message) {
+    if (!condition) throw std::invalid_argument(message);
+}
+
+// Fills a packed array with make(i), and finds the first i that is not accepted (-1: all are).
+template <typename Make, typename Accept>
+std::pair<nb::object, std::int64_t> checked(std::size_t n, Make make, Accept accept) {
+    Result<double> out(n, 3);
+    std::int64_t first = -1;
+    {
+        nb::gil_scoped_release release;
+        for (std::size_t i = 0; i < n; ++i) {
+            const Tensor t = make(i);
+            store(out.data + 3 * i, t);
+            if (!accept(i, t) && first < 0) first = std::int64_t(i);
+        }
+    }
+    return {out.numpy(), first};
+}
+
+auto check_sizes(Values sizes) {
+    const double* h = sizes.data();
+    return checked(
+        sizes.shape(0), [h](std::size_t i) { return metrics::from_size(h[i]); },
+        [h](std::size_t i, Tensor t) { return h[i] > 0 && metrics::is_metric(t); });
+}
+
+auto check_tensors(Tensors tensors) {
+    const double* m = tensors.data();
+    return checked(
+        tensors.shape(0), [m](std::size_t i) { return load(m + 3 * i); },
+        [](std::size_t, Tensor t) { return metrics::is_metric(t); });
+}
+
+auto check_matrices(Matrices matrices, double asymmetry) {
+    const double* m = matrices.data();
+    return checked(
+        matrices.shape(0),
+        [m](std::size_t i) {
+            const double* p = m + 4 * i;
+            return Tensor{p[0], 0.5 * (p[1] + p[2]), p[3]};
+        },
+        [m, asymmetry](std::size_t i, Tensor t) {
+            const double difference = std::fabs(m[4 * i + 1] - m[4 * i + 2]);
+            return metrics::is_metric(t) && difference <= asymmetry * (t.a + t.c);
+        });
+}
+
+template <typename Function>
+nb::object map_tensors(Tensors tensors, Function function) {
+    Result<double> out(tensors.shape(0), 3);
+    {
+        nb::gil_scoped_release release;
+        const double* in = tensors.data();
+        for (std::size_t i = 0; i < out.rows; ++i) {
+            store(out.data + 3 * i, function(load(in + 3 * i)));
+        }
+    }
+    return out.numpy();
+}
+
+template <typename Function>
+nb::object combine(Tensors s, Tensors t, Function function) {
+    require(s.shape(0) == t.shape(0), "as many tensors are needed on both sides");
+    Result<double> out(s.shape(0), 3);
+    {
+        nb::gil_scoped_release release;
+        const double *left = s.data(), *right = t.data();
+        for (std::size_t i = 0; i < out.rows; ++i) {
+            store(out.data + 3 * i, function(load(left + 3 * i), load(right + 3 * i)));
+        }
+    }
+    return out.numpy();
+}
+
+nb::object lengths(Tensors s, Tensors t, Points edges) {
+    require(s.shape(0) == t.shape(0) && s.shape(0) == edges.shape(0),
+            "one tensor at each end of each edge is needed");
+    Result<double> out(s.shape(0));
+    {
+        nb::gil_scoped_release release;
+        const double *start = s.data(), *end = t.data(), *e = edges.data();
+        for (std::size_t i = 0; i < out.rows; ++i) {
+            out.data[i] =
+                metrics::length(load(start + 3 * i), load(end + 3 * i), e[2 * i], e[2 * i + 1]);
+        }
+    }
+    return out.numpy();
+}
+
+nb::object dets(Tensors tensors) {
+    Result<double> out(tensors.shape(0));
+    {
+        nb::gil_scoped_release release;
+        const double* in = tensors.data();
+        for (std::size_t i = 0; i < out.rows; ++i) out.data[i] = metrics::det(load(in + 3 * i));
+    }
+    return out.numpy();
+}
+
+std::pair<nb::object, nb::object> spectra(Tensors tensors) {
+    Result<double> values(tensors.shape(0), 2), direction(tensors.shape(0), 2);
+    {
+        nb::gil_scoped_release release;
+        const double* in = tensors.data();
+        for (std::size_t i = 0; i < values.rows; ++i) {
+            const metrics::Spectrum s = metrics::spectrum(load(in + 3 * i));
+            values.data[2 * i] = s.low, values.data[2 * i + 1] = s.high;
+            direction.data[2 * i] = s.x, direction.data[2 * i + 1] = s.y;
+        }
+    }
+    return {values.numpy(), direction.numpy()};
+}
+
+nb::tuple evaluate(const metrics::Background& background, Points points,
+                   std::optional<Indices> hints) {
+    const std::size_t n = points.shape(0);
+    require(!hints || hints->shape(0) == n, "one hint for each point is needed");
+    Result<double> tensors(n, 3), outside(n);
+    Result<Index> triangles(n);
+    {
+        nb::gil_scoped_release release;
+        const double* p = points.data();
+        const Index* hint = hints ? hints->data() : nullptr;
+        for (std::size_t i = 0; i < n; ++i) {
+            const metrics::Location place =
+                background.locate(p[2 * i], p[2 * i + 1], hint ? hint[i] : -1);
+            store(tensors.data + 3 * i, background.value(place));
+            triangles.data[i] = place.triangle;
+            outside.data[i] = place.outside;
+        }
+    }
+    return nb::make_tuple(tensors.numpy(), triangles.numpy(), outside.numpy());
+}
+
+void construct(metrics::Background* self, Points points, Tensors logs, Triangles triangles) {
+    require(points.shape(0) == logs.shape(0), "one tensor for each point is needed");
+    nb::gil_scoped_release release;
+    new (self) metrics::Background(points.data(), logs.data(), points.shape(0), triangles.data(),
+                                   triangles.shape(0));
+}
+
+}  // namespace
+
+NB_MODULE(_core, m) {
+    m.doc() =
+        "The compiled core of metrics. Arrays are contiguous, (n, 3) tensors are packed "
+        "(m11, m12, m22). The check functions return (packed copy, index of the first item that is "
+        "not a metric or -1).";
+    m.def("check_sizes", &check_sizes, "sizes"_a);
+    m.def("check_tensors", &check_tensors, "tensors"_a);
+    m.def("check_matrices", &check_matrices, "matrices"_a, "asymmetry"_a);
+
+    m.def("log", [](Tensors t) { return map_tensors(t, metrics::log_tensor); }, "tensors"_a);
+    m.def("exp", [](Tensors t) { return map_tensors(t, metrics::exp_tensor); }, "tensors"_a);
+    m.def(
+        "power",
+        [](Tensors t, double exponent) {
+            return map_tensors(t, [=](Tensor s) { return metrics::power(s, exponent); });
+        },
+        "tensors"_a, "exponent"_a);
+    m.def(
+        "limited",
+        [](Tensors t, double low, double high) {
+            return map_tensors(t, [=](Tensor s) { return metrics::limited(s, low, high); });
+        },
+        "tensors"_a, "low"_a, "high"_a);
+    m.def("det", &dets, "tensors"_a);
+    m.def("spectra", &spectra, "tensors"_a,
+          "Eigenvalues (n, 2) ascending, unit eigenvector (n, 2) of the larger.");
+    m.def("intersect", [](Tensors s, Tensors t) { return combine(s, t, metrics::intersect); });
+    m.def("geometric_mean",
+          [](Tensors s, Tensors t) { return combine(s, t, metrics::geometric_mean); });
+    m.def("lengths", &lengths, "at_start"_a, "at_end"_a, "edges"_a);
+
+    nb::class_<metrics::Background>(m, "Background")
+        .def("__init__", &construct, "points"_a, "logs"_a, "triangles"_a)
+        .def("evaluate", &evaluate, "points"_a, "hints"_a = nb::none(),
+             "Metrics (n, 3), triangles (n,), distances from the mesh (n,).");
+}

@@ -1,0 +1,159 @@
+"""The control space carried by a mesh."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _core, tensor
+from .arrays import Floats, Ints, as_numbers, as_points, as_triangles
+from .control import ControlSpace
+from .errors import MetricError
+
+__all__ = ["Background"]
+
+# A point this far outside, relative to the diagonal of the mesh, is on its border by rounding.
+_BORDER = 1e-9
+
+
+class Background(ControlSpace):
+    """A metric given at the vertices of a mesh, interpolated on its triangles.
+
+    The logarithm of the tensor is linear on each triangle, which keeps it positive definite and
+    sizes geometric: half way between h = 0.01 and h = 1 is 0.1.
+
+    Parameters
+    ----------
+    points : (n, 2) array_like of float
+        The vertices.
+    triangles : (m, 3) array_like of int
+        Counter-clockwise vertex numbers, from 0; a mesh that may have holes and several parts.
+    values : (n,), (n, 3) or (n, 2, 2) array_like
+        Sizes, packed tensors or matrices at the vertices.
+    outside : {"clamp", "error"}, optional
+        For a point outside of the mesh, by more than 1e-9 of its diagonal: the value at the nearest
+        point of its border, or a `MetricError` that names the point.
+
+    Raises
+    ------
+    MetricError
+        If the arrays do not fit together, a value is not a metric, or the triangles are not a
+        mesh: out of range, not counter-clockwise, without area, or on top of each other.
+    """
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        triangles: ArrayLike,
+        values: ArrayLike,
+        outside: Literal["clamp", "error"] = "clamp",
+    ) -> None:
+        if outside not in ("clamp", "error"):
+            raise MetricError(f'outside must be "clamp" or "error", not {outside!r}')
+        self.outside = outside
+        self.points = as_points(points).copy()
+        self.triangles = as_triangles(triangles, len(self.points)).copy()
+        _check_areas(self.points, self.triangles)
+        tensors = tensor.pack(values, points=self.points, what="the value")
+        self.logs = _core.log(tensors)
+        for array in (self.points, self.triangles, self.logs):
+            array.flags.writeable = False
+        try:
+            self._search = _core.Background(self.points, self.logs, self.triangles)
+        except ValueError as error:
+            raise MetricError(f"the triangles are not a mesh: {error}") from error
+        corners = self.points[np.unique(self.triangles)]
+        self._border = _BORDER * float(np.hypot(*np.ptp(corners, axis=0)))
+
+    @classmethod
+    def on(
+        cls, mesh: Any, values: ArrayLike, outside: Literal["clamp", "error"] = "clamp"
+    ) -> Background:
+        """The background on a mesh object.
+
+        Parameters
+        ----------
+        mesh : object
+            Has `points` (n, 2), or (n, 3) of which z is ignored, and either `triangles` (m, 3) or,
+            as in meshio, `cells_dict["triangle"]`.
+        values, outside
+            As for `Background`.
+        """
+        points = np.asarray(mesh.points)
+        if points.ndim == 2 and points.shape[1] == 3:
+            points = points[:, :2]
+        triangles = getattr(mesh, "triangles", None)
+        if triangles is None:
+            triangles = getattr(mesh, "cells_dict", {}).get("triangle")
+        if triangles is None:
+            raise MetricError(f"{type(mesh).__name__} has neither triangles nor triangle cells")
+        return cls(points, triangles, values, outside)
+
+    def evaluate(self, points: ArrayLike, hints: ArrayLike | None = None) -> tuple[Floats, Ints]:
+        """The metric at points, and the triangle that each was found in.
+
+        Parameters
+        ----------
+        points : (k, 2) array_like of float
+        hints : (k,) array_like of int, optional
+            For each point, a triangle that is probably near; -1 where none is known. Hints change
+            the time taken and nothing else, except which of two triangles a point on their common
+            edge is found in.
+
+        Returns
+        -------
+        tensors : (k, 3) array of float
+            Packed.
+        triangles : (k,) array of int32
+            For a point outside, the triangle at the nearest point of the border.
+
+        Raises
+        ------
+        MetricError
+            With ``outside="error"``, naming the first point outside.
+        """
+        where = as_points(points)
+        near = None if hints is None else _as_hints(hints, len(where))
+        tensors, triangles, distances = self._search.evaluate(where, near)
+        if self.outside == "error" and (distances > self._border).any():
+            i = int(np.argmax(distances > self._border))
+            x, y = where[i].tolist()
+            raise MetricError(
+                f"point {i} ({x!r}, {y!r}) is outside of the background mesh by "
+                f'{distances[i]:.6g}; outside="clamp" takes the nearest value'
+            )
+        return tensors, triangles
+
+    def values(self, points: Floats) -> ArrayLike:
+        return self.evaluate(points)[0]
+
+    def __repr__(self) -> str:
+        return f"<Background: {len(self.points)} points, {len(self.triangles)} triangles>"
+
+
+def _as_hints(hints: ArrayLike, count: int) -> Ints:
+    raw = as_numbers(hints, "hints")
+    if raw.shape != (count,) or (raw.size and raw.dtype.kind not in "iu"):
+        raise MetricError(
+            f"hints must be {count} integers, one for each point, not {raw.dtype} {raw.shape}"
+        )
+    return np.ascontiguousarray(raw, np.int32)
+
+
+def _check_areas(points: Floats, triangles: Ints) -> None:
+    if len(triangles) == 0:
+        raise MetricError("a background mesh needs at least one triangle")
+    p, q, r = (points[triangles[:, k]] for k in range(3))
+    doubled = (q[:, 0] - p[:, 0]) * (r[:, 1] - p[:, 1]) - (q[:, 1] - p[:, 1]) * (r[:, 0] - p[:, 0])
+    if (doubled > 0).all():
+        return
+    i = int(np.argmin(doubled > 0))
+    corners = ", ".join(f"({x:.6g}, {y:.6g})" for x, y in (p[i], q[i], r[i]))
+    flaw = (
+        "has no area"
+        if doubled[i] == 0
+        else "is clockwise; reverse it: triangles[i] = triangles[i, ::-1]"
+    )
+    raise MetricError(f"triangle {i} with the corners {corners} {flaw}")

@@ -1,0 +1,176 @@
+"""Control spaces: the metric at every point, and what can be done with one.
+
+A control space is called with points ``(n, 2)`` and returns packed tensors ``(n, 3)``. Whatever it
+computes is checked on return, so that nothing downstream meets a metric that is not one.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from numbers import Real
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import tensor
+from .arrays import Floats, as_points
+from .errors import AdaptmeshError, MetricError
+
+__all__ = ["ControlSpace", "Metric", "Uniform", "as_control_space"]
+
+
+class ControlSpace(ABC):
+    """The metric at every point. Derive from it and write `values`.
+
+    Called with points ``(n, 2)`` it returns packed tensors ``(n, 3)``, or raises `MetricError`
+    naming the first point where the value is not a metric.
+
+    Examples
+    --------
+    >>> field = as_control_space(lambda x: 0.01 + 0.1 * x[:, 0]) & 0.05
+    >>> tensor.sizes(field([[0.0, 0.0], [1.0, 0.0]]))
+    array([[0.01, 0.01],
+           [0.05, 0.05]])
+    """
+
+    __array_ufunc__ = None  # np.float64(0.1) & field is ours to answer, not numpy's
+
+    @abstractmethod
+    def values(self, points: Floats) -> ArrayLike:
+        """Sizes (n,), packed tensors (n, 3) or matrices (n, 2, 2) at points (n, 2)."""
+
+    def __call__(self, points: ArrayLike) -> Floats:
+        """Packed tensors (n, 3) at points (n, 2), checked."""
+        where = as_points(points)
+        return tensor.pack(self.values(where), points=where, what=f"the value of {self!r}")
+
+    def __and__(self, other: Metric) -> ControlSpace:
+        """The intersection: nowhere a longer step than either allows."""
+        return Intersection(self, as_control_space(other))
+
+    def __rand__(self, other: Metric) -> ControlSpace:
+        return Intersection(as_control_space(other), self)
+
+    def scaled(self, factor: float) -> ControlSpace:
+        """The same field with every size multiplied by `factor`: 2 gives a mesh twice as coarse."""
+        return Scaled(self, factor)
+
+    def limited(self, h_min: float = 0.0, h_max: float = np.inf) -> ControlSpace:
+        """The same field with every size brought into [h_min, h_max]; the axes stay."""
+        return Limited(self, h_min, h_max)
+
+
+Metric: TypeAlias = "float | Callable[[Floats], ArrayLike] | ControlSpace"
+
+
+def as_control_space(metric: Metric) -> ControlSpace:
+    """The control space that a user means.
+
+    Parameters
+    ----------
+    metric : float, callable, or ControlSpace
+        A size h for everywhere; a function of points (n, 2) that returns sizes (n,), packed
+        tensors (n, 3) or matrices (n, 2, 2); or a control space, such as a `Background`, which is
+        returned as it is.
+
+    Raises
+    ------
+    MetricError
+        For anything else.
+    """
+    if isinstance(metric, ControlSpace):
+        return metric
+    if isinstance(metric, Real) and not isinstance(metric, (bool, np.bool_)):
+        return Uniform(float(metric))
+    if callable(metric):
+        return Function(metric)
+    remedy = ""
+    if isinstance(metric, str):
+        remedy = "; a formula in x and y is metrics.Expression(text)"
+    elif isinstance(metric, (np.ndarray, list, tuple)):
+        remedy = "; values at the vertices of a mesh are metrics.Background.on(mesh, values)"
+    raise MetricError(
+        f"a metric is a size, a function of points (n, 2), or a control space, "
+        f"not {type(metric).__name__}{remedy}"
+    )
+
+
+class Uniform(ControlSpace):
+    """The size h everywhere."""
+
+    def __init__(self, h: float) -> None:
+        tensor.pack(np.array([h], np.float64), what="the uniform size")
+        self.h = float(h)
+
+    def values(self, points: Floats) -> ArrayLike:
+        return np.full(len(points), self.h)
+
+    def __repr__(self) -> str:
+        return f"Uniform({self.h!r})"
+
+
+class Function(ControlSpace):
+    """A user's function of points (n, 2)."""
+
+    def __init__(self, function: Callable[[Floats], ArrayLike]) -> None:
+        self.function = function
+
+    def values(self, points: Floats) -> ArrayLike:
+        try:
+            return self.function(points.copy())  # it may write on its argument, but not on ours
+        except AdaptmeshError:
+            raise
+        except Exception as error:
+            raise MetricError(
+                f"{self!r} raised {type(error).__name__} when called with {len(points)} points, "
+                f"an array of shape {points.shape}: {error}"
+            ) from error
+
+    def __repr__(self) -> str:
+        name = getattr(self.function, "__qualname__", None) or repr(self.function)
+        code = getattr(self.function, "__code__", None)
+        return f"{name} ({code.co_filename}:{code.co_firstlineno})" if code else name
+
+
+class Intersection(ControlSpace):
+    """Nowhere a longer step than either of two fields allows."""
+
+    def __init__(self, first: ControlSpace, second: ControlSpace) -> None:
+        self.first, self.second = first, second
+
+    def values(self, points: Floats) -> ArrayLike:
+        return tensor.intersect(self.first(points), self.second(points))
+
+    def __repr__(self) -> str:
+        return f"{self.first!r} & {self.second!r}"
+
+
+class Scaled(ControlSpace):
+    """Every size of a field multiplied by a factor."""
+
+    def __init__(self, field: ControlSpace, factor: float) -> None:
+        if not 0 < factor < np.inf:
+            raise MetricError(f"sizes are scaled by a positive factor, not {factor!r}")
+        self.field, self.factor = field, float(factor)
+
+    def values(self, points: Floats) -> ArrayLike:
+        return self.field(points) / self.factor**2
+
+    def __repr__(self) -> str:
+        return f"({self.field!r}).scaled({self.factor!r})"
+
+
+class Limited(ControlSpace):
+    """Every size of a field brought into an interval."""
+
+    def __init__(self, field: ControlSpace, h_min: float, h_max: float) -> None:
+        tensor.limit(np.empty((0, 3)), h_min, h_max)
+        self.field, self.h_min, self.h_max = field, float(h_min), float(h_max)
+
+    def values(self, points: Floats) -> ArrayLike:
+        return tensor.limit(self.field(points), self.h_min, self.h_max)
+
+    def __repr__(self) -> str:
+        return f"({self.field!r}).limited({self.h_min!r}, {self.h_max!r})"

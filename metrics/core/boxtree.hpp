@@ -1,0 +1,157 @@
+// A static tree of boxes: which items may contain a point, and which item is nearest to it.
+//
+// The boxes are put in the order of a space-filling curve, and every FANOUT consecutive boxes get
+// one box around them, level upon level, up to one root:
+//
+//     level 2   [            0            ]
+//     level 1   [     0     ][     1      ]
+//     level 0   [0][1][2][3] [4][5][6]            children of k: FANOUT k ... FANOUT k + FANOUT - 1
+//
+// Nothing is searched by walking, so an answer is definite whatever the shape of the domain.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace metrics {
+
+struct Box {
+    double x0 = std::numeric_limits<double>::infinity(), y0 = x0, x1 = -x0, y1 = -x0;
+
+    void include(double x, double y) {
+        x0 = std::min(x0, x), x1 = std::max(x1, x);
+        y0 = std::min(y0, y), y1 = std::max(y1, y);
+    }
+    void include(const Box& other) {
+        x0 = std::min(x0, other.x0), x1 = std::max(x1, other.x1);
+        y0 = std::min(y0, other.y0), y1 = std::max(y1, other.y1);
+    }
+    bool contains(double x, double y) const { return x0 <= x && x <= x1 && y0 <= y && y <= y1; }
+    double squared_distance(double x, double y) const {
+        const double dx = std::max(std::max(x0 - x, x - x1), 0.0);
+        const double dy = std::max(std::max(y0 - y, y - y1), 0.0);
+        return dx * dx + dy * dy;
+    }
+};
+
+class BoxTree {
+  public:
+    BoxTree() = default;
+
+    explicit BoxTree(const std::vector<Box>& boxes) : items_(curve_order(boxes)) {
+        std::vector<Box> level;
+        level.reserve(boxes.size());
+        for (std::int32_t item : items_) level.push_back(boxes[item]);
+        levels_.push_back(std::move(level));
+        while (levels_.back().size() > 1) {
+            const std::vector<Box>& below = levels_.back();
+            std::vector<Box> above((below.size() + FANOUT - 1) / FANOUT);
+            for (std::size_t k = 0; k < below.size(); ++k) above[k / FANOUT].include(below[k]);
+            levels_.push_back(std::move(above));
+        }
+    }
+
+    // Calls visit(item) for each item whose box contains the point, until it returns true.
+    template <typename Visit>
+    void containing(double x, double y, Visit visit) const {
+        if (items_.empty()) return;
+        Node stack[MAX_DEPTH];
+        int depth = 0;
+        stack[depth++] = {int(levels_.size()) - 1, 0, 0};
+        while (depth > 0) {
+            const Node node = stack[--depth];
+            if (!levels_[node.level][node.index].contains(x, y)) continue;
+            if (node.level == 0) {
+                if (visit(items_[node.index])) return;
+                continue;
+            }
+            for (std::size_t k = first_child(node); k < end_child(node); ++k) {
+                stack[depth++] = {node.level - 1, k, 0};
+            }
+        }
+    }
+
+    // The item of smallest squared_distance(item), which must not be less than that to its box;
+    // -1 in an empty tree. Of equals, the first met.
+    template <typename SquaredDistance>
+    std::int32_t nearest(double x, double y, SquaredDistance squared_distance) const {
+        if (items_.empty()) return -1;
+        std::int32_t best = -1;
+        double best_distance = std::numeric_limits<double>::infinity();
+        Node stack[MAX_DEPTH];
+        int depth = 0;
+        stack[depth++] = {int(levels_.size()) - 1, 0, 0};
+        while (depth > 0) {
+            const Node node = stack[--depth];
+            if (best >= 0 && node.distance >= best_distance) continue;
+            if (node.level == 0) {
+                const double distance = squared_distance(items_[node.index]);
+                if (best < 0 || distance < best_distance) {
+                    best = items_[node.index], best_distance = distance;
+                }
+                continue;
+            }
+            const int bottom = depth;
+            for (std::size_t k = first_child(node); k < end_child(node); ++k) {
+                const double d = levels_[node.level - 1][k].squared_distance(x, y);
+                stack[depth++] = {node.level - 1, k, d};
+            }
+            std::sort(stack + bottom, stack + depth,  // the nearest on top
+                      [](const Node& p, const Node& q) { return p.distance > q.distance; });
+        }
+        return best;
+    }
+
+  private:
+    static constexpr std::size_t FANOUT = 4;
+    static constexpr int MAX_DEPTH = 64;  // 16 levels of 4 hold 2^32 items; FANOUT a level waits
+
+    struct Node {
+        int level;
+        std::size_t index;
+        double distance;
+    };
+
+    std::size_t first_child(const Node& node) const { return FANOUT * node.index; }
+    std::size_t end_child(const Node& node) const {
+        return std::min(first_child(node) + FANOUT, levels_[node.level - 1].size());
+    }
+
+    // Puts a zero before each of the low 16 bits: dcba -> 0d0c0b0a.
+    static std::uint32_t spread(std::uint32_t v) {
+        v = (v | v << 8) & 0x00ff00ffu;
+        v = (v | v << 4) & 0x0f0f0f0fu;
+        v = (v | v << 2) & 0x33333333u;
+        return (v | v << 1) & 0x55555555u;
+    }
+
+    // Item numbers in Morton order of the centres of their boxes.
+    static std::vector<std::int32_t> curve_order(const std::vector<Box>& boxes) {
+        Box all;
+        for (const Box& box : boxes) all.include(box);
+        const double side_x = all.x1 - all.x0, side_y = all.y1 - all.y0;
+        const auto cell = [](double centre, double low, double side) {
+            return side > 0 ? std::uint32_t((centre - low) / side * 65535) : 0u;
+        };
+        std::vector<std::uint64_t> keys(boxes.size());
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const Box& box = boxes[i];
+            const std::uint32_t code =
+                spread(cell(box.x0 + 0.5 * (box.x1 - box.x0), all.x0, side_x)) |
+                spread(cell(box.y0 + 0.5 * (box.y1 - box.y0), all.y0, side_y)) << 1;
+            keys[i] = std::uint64_t(code) << 32 | i;
+        }
+        std::sort(keys.begin(), keys.end());
+        std::vector<std::int32_t> order(boxes.size());
+        for (std::size_t k = 0; k < keys.size(); ++k) order[k] = std::int32_t(keys[k] & 0xffffffff);
+        return order;
+    }
+
+    std::vector<std::int32_t> items_;
+    std::vector<std::vector<Box>> levels_;
+};
+
+}  // namespace metrics

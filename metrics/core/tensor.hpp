@@ -1,0 +1,211 @@
+// The algebra of 2x2 symmetric positive definite tensors, in closed form.
+//
+// A tensor M measures a vector e by the length sqrt(e' M e); its unit ball is an ellipse whose half
+// axes are the two sizes h_i = 1 / sqrt(lambda_i), along the eigenvectors.
+//
+// Accuracy. The small eigenvalue of an anisotropic tensor is never computed as a difference of
+// large numbers: it is det / lambda_max, the determinant is computed with the rounding errors of
+// its two products, and other sums have terms of one sign. What remains is the rounding of the
+// stored entries themselves, which at 45 degrees blurs the small eigenvalue by 1e-16 lambda_max;
+// along the axes nothing is lost.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace metrics {
+
+struct Tensor {
+    double a, b, c;  // m11, m12, m22
+
+    // The quadratic form: the squared length of (dx, dy).
+    double q(double dx, double dy) const { return a * dx * dx + 2 * b * dx * dy + c * dy * dy; }
+};
+
+inline Tensor operator+(Tensor s, Tensor t) {
+    return {s.a + t.a, s.b + t.b, s.c + t.c};
+}
+inline Tensor operator-(Tensor s, Tensor t) {
+    return {s.a - t.a, s.b - t.b, s.c - t.c};
+}
+inline Tensor operator*(double k, Tensor t) {
+    return {k * t.a, k * t.b, k * t.c};
+}
+
+inline Tensor from_size(double h) {
+    const double m = 1 / (h * h);
+    return {m, 0, m};
+}
+
+// x * y minus its rounded value, exactly, by Dekker's splitting of each factor into two halves.
+inline double product_error(double x, double y) {
+    const double cut_x = 0x1.0000002p27 * x, cut_y = 0x1.0000002p27 * y;
+    const double x1 = cut_x - (cut_x - x), x2 = x - x1;
+    const double y1 = cut_y - (cut_y - y), y2 = y - y1;
+    return x2 * y2 - (((x * y - x1 * y1) - x2 * y1) - x1 * y2);
+}
+
+// The determinant of the entries as they are stored, to nearly full precision even where the two
+// products cancel.
+inline double exact_det(Tensor t) {
+    const double diagonal = t.a * t.c, square = t.b * t.b;
+    const double difference = diagonal - square;
+    if (difference > 0.25 * diagonal) return difference;
+    return difference + (product_error(t.a, t.c) - product_error(t.b, t.b));
+}
+
+// Beyond this share of its diagonal product, a determinant is nothing but the rounding of entries.
+constexpr double DET_RESOLUTION = 0x1p-53;
+
+// Finite, positive definite to double precision, and of a determinant that a double can hold.
+inline bool is_metric(Tensor t) {
+    const double det = exact_det(t);  // NaN fails each test
+    return t.a > 0 && t.c > 0 && det > DET_RESOLUTION * (t.a * t.c) &&
+           t.a * t.c <= std::numeric_limits<double>::max();
+}
+
+// The determinant, not below its resolution: results of this algebra that rounding has made
+// singular are still metrics. What is_metric has accepted is never changed by that.
+inline double det(Tensor t) {
+    return std::max(exact_det(t), DET_RESOLUTION * (t.a * t.c));
+}
+
+inline double sqrt_det(Tensor t) {
+    return std::sqrt(det(t));
+}
+
+// The traceless part ((d, b), (b, -d)) has the eigenvalues -r and r, whatever the mean of the
+// diagonal; log, exp and the spectrum are functions of it.
+struct Deviator {
+    double mean, d, b, r;
+
+    explicit Deviator(Tensor t)
+        : mean(0.5 * (t.a + t.c)), d(0.5 * (t.a - t.c)), b(t.b), r(std::sqrt(d * d + b * b)) {}
+
+    // r + d and r - d, both without cancellation: their product is b^2.
+    double r_plus_d() const { return d >= 0 ? r + d : b * b / (r - d); }
+    double r_minus_d() const { return d <= 0 ? r - d : b * b / (r + d); }
+};
+
+// Eigenvalues, and the unit eigenvector (x, y) of the larger one; (-y, x) is the other's.
+struct Spectrum {
+    double low, high, x, y;
+};
+
+inline Spectrum spectrum(Tensor t) {
+    const Deviator dev(t);
+    const double high = dev.mean + dev.r;
+    if (dev.r == 0) return {high, high, 1, 0};
+    const double x = dev.d >= 0 ? dev.r + dev.d : dev.b;
+    const double y = dev.d >= 0 ? dev.b : dev.r - dev.d;
+    const double norm = std::sqrt(x * x + y * y);
+    return {det(t) / high, high, x / norm, y / norm};
+}
+
+inline Tensor from_spectrum(Spectrum s) {
+    return {s.high * s.x * s.x + s.low * s.y * s.y, (s.high - s.low) * s.x * s.y,
+            s.high * s.y * s.y + s.low * s.x * s.x};
+}
+
+inline Tensor power(Tensor t, double exponent) {
+    const Spectrum s = spectrum(t);
+    return from_spectrum({std::pow(s.low, exponent), std::pow(s.high, exponent), s.x, s.y});
+}
+
+// The same axes with the eigenvalues brought into [low, high]; the very same tensor if they are.
+inline Tensor limited(Tensor t, double low, double high) {
+    const Spectrum s = spectrum(t);
+    if (low <= s.low && s.high <= high) return t;
+    const auto clip = [=](double value) { return std::min(std::max(value, low), high); };
+    return from_spectrum({clip(s.low), clip(s.high), s.x, s.y});
+}
+
+// log M = (ln det M) / 2 I + artanh(r / mean) / r (M - mean I)
+inline Tensor log_tensor(Tensor t) {
+    const Deviator dev(t);
+    const double determinant = det(t);
+    const double half_log_det = 0.5 * std::log(determinant);
+    const double z = dev.r / dev.mean;
+    double slope;  // artanh(z) / r
+    if (z < 1e-4) {
+        slope = (1 + z * z / 3) / dev.mean;
+    } else if (z < 0.5) {
+        slope = std::atanh(z) / dev.r;
+    } else {  // artanh loses what distinguishes z from 1; the ratio of the eigenvalues does not
+        const double high = dev.mean + dev.r;
+        slope = 0.5 * std::log(high / (determinant / high)) / dev.r;
+    }
+    return {half_log_det + slope * dev.d, slope * dev.b, half_log_det - slope * dev.d};
+}
+
+// exp A = e^mean (cosh r I + sinh r / r (A - mean I)), written as low I + s (r I + deviator) with
+// s = e^mean sinh r / r: every term of the diagonal is positive.
+inline Tensor exp_tensor(Tensor t) {
+    const Deviator dev(t);
+    const double scale = std::exp(dev.mean);
+    if (dev.r < 0.3) {
+        const double r2 = dev.r * dev.r;
+        const double s =
+            scale * (1 + r2 / 6 * (1 + r2 / 20 * (1 + r2 / 42 * (1 + r2 / 72 * (1 + r2 / 110)))));
+        const double cosh = scale * std::cosh(dev.r);
+        return {cosh + s * dev.d, s * dev.b, cosh - s * dev.d};
+    }
+    const double stretch = std::exp(dev.r);
+    const double low = scale / stretch, high = scale * stretch;
+    const double s = 0.5 * (high - low) / dev.r;
+    return {low + s * dev.r_plus_d(), s * dev.b, low + s * dev.r_minus_d()};
+}
+
+// Weighted log-Euclidean mean of two; of more: exp_tensor of the weighted sum of the logs.
+inline Tensor log_mean(Tensor s, Tensor t, double weight_of_t) {
+    return exp_tensor((1 - weight_of_t) * log_tensor(s) + weight_of_t * log_tensor(t));
+}
+
+// The geometric mean A#B, half way on the geodesic from A to B; where they commute, (AB)^(1/2).
+inline Tensor geometric_mean(Tensor s, Tensor t) {
+    const double root_s = sqrt_det(s), root_t = sqrt_det(t);
+    const Tensor sum = (1 / root_s) * s + (1 / root_t) * t;
+    return std::sqrt(root_s * root_t / det(sum)) * sum;
+}
+
+// Metric length of the edge (dx, dy) from a point with metric s to one with metric t: Simpson's
+// rule with the geometric mean of the two as the metric half way. root_s, root_t are sqrt_det(s),
+// sqrt_det(t), which a caller may keep. The determinant of s / root_s + t / root_t is
+// 2 + (mixed discriminant) / (root_s root_t), and that quotient is at least 2.
+inline double length(Tensor s, double root_s, Tensor t, double root_t, double dx, double dy) {
+    const double q_s = s.q(dx, dy), q_t = t.q(dx, dy);
+    const double roots = root_s * root_t;
+    const double mixed = s.a * t.c + s.c * t.a - 2 * s.b * t.b;
+    const double det_sum = 2 + std::max(2.0, mixed / roots);
+    const double q_mid = std::sqrt(roots / det_sum) * (q_s / root_s + q_t / root_t);
+    return (std::sqrt(std::max(q_s, 0.0)) + 4 * std::sqrt(std::max(q_mid, 0.0)) +
+            std::sqrt(std::max(q_t, 0.0))) /
+           6;
+}
+
+inline double length(Tensor s, Tensor t, double dx, double dy) {
+    return length(s, sqrt_det(s), t, sqrt_det(t), dx, dy);
+}
+
+// The largest ellipse inside both unit ellipses that simultaneous reduction gives: in the basis
+// where s is the identity and t diagonal, the larger of each pair of eigenvalues.
+//
+// With s = L L' and N = L^-1 t L^-T = low vv' + high ww': s itself if high <= 1, t if low >= 1, and
+// otherwise L (I + (high - 1) ww') L' = s + (high - 1) (Lw)(Lw)', without forming the inverse.
+inline Tensor intersect(Tensor s, Tensor t) {
+    const double l11 = std::sqrt(s.a), l21 = s.b / l11, l22 = sqrt_det(s) / l11;
+    const double k = l21 / l11;
+    const Tensor n = {t.a / s.a, (t.b - k * t.a) / (l11 * l22),
+                      t.q(-k, 1) / (l22 * l22)};  // the last: (-k, 1) / l22 is a row of L^-1
+    const Deviator dev(n);
+    const double high = dev.mean + dev.r;
+    if (high <= 1) return s;
+    const double low = det(t) / (det(s) * high);
+    if (low >= 1) return t;
+    const Spectrum e = spectrum(n);
+    const double x = l11 * e.x, y = l21 * e.x + l22 * e.y;
+    return s + (high - 1) * Tensor{x * x, x * y, y * y};
+}
+
+}  // namespace metrics
