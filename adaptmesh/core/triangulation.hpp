@@ -247,6 +247,19 @@ class Triangulation {
         return {NONE, 0};
     }
 
+    // Gives vertex v the number name[v]; `name` is a permutation. The ghost keeps its own.
+    void rename_vertices(const std::vector<Index>& name) {
+        for (Triangle& t : triangles) {
+            for (Index& v : t.v) {
+                if (v != GHOST) v = name[v];
+            }
+        }
+        std::vector<Index> renamed(triangle_at_.size());
+        renamed[0] = triangle_at_[0];
+        for (Index v = 0; v < vertex_count(); ++v) renamed[name[v] + 1] = triangle_at_[v + 1];
+        triangle_at_.swap(renamed);
+    }
+
     // A visit mark no triangle bears.
     std::uint32_t new_stamp() {
         if (++stamp_ == std::uint32_t(1) << 31) {  // wrapped
