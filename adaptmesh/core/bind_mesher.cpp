@@ -14,6 +14,18 @@ Tensor tensor_in(const Tensors& array, std::size_t i) {
     return {array(i, 0), array(i, 1), array(i, 2)};
 }
 
+std::vector<Point> points_in(const Points& array) {
+    std::vector<Point> out(array.shape(0));
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {array(i, 0), array(i, 1)};
+    return out;
+}
+
+std::vector<std::array<Index, 2>> pairs_in(const IndexPairs& array) {
+    std::vector<std::array<Index, 2>> out(array.shape(0));
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {array(i, 0), array(i, 1)};
+    return out;
+}
+
 void expect_rows(std::size_t got, std::size_t wanted, const char* what) {
     if (got != wanted) {
         throw nb::value_error((std::string(what) + ": " + std::to_string(got) + " rows, expected " +
@@ -69,10 +81,9 @@ class Mesher {
         const std::size_t n = points.shape(0);
         expect_rows(tensors.shape(0), n, "tensors");
         expect_rows(held_by.shape(0), n, "held_by");
-        std::vector<Point> at(n);
-        for (std::size_t i = 0; i < n; ++i) at[i] = {points(i, 0), points(i, 1)};
-        const auto pairs = segments_of(segments);
-        const auto hole_points = points_of(holes), seed_points = points_of(seeds);
+        const std::vector<Point> at = points_in(points);
+        const auto pairs = pairs_in(segments);
+        const auto hole_points = points_in(holes), seed_points = points_in(seeds);
 
         nb::gil_scoped_release release;
         ConstrainedTriangulation outline =

@@ -81,7 +81,7 @@ class Triangulation {
     Index add_triangle(Index a, Index b, Index c) {
         triangles.push_back({{a, b, c}, {NONE, NONE, NONE}, 0, 1, 0});
         const Index k = triangle_count() - 1;
-        for (Index vertex : t.v) set_triangle_at(vertex, k);
+        for (Index vertex : {a, b, c}) set_triangle_at(vertex, k);
         return k;
     }
 
