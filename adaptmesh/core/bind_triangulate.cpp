@@ -1,7 +1,9 @@
+#include <nanobind/stl/string.h>
+
 #include <cstring>
 
 #include "adaptmesh/core/bindings.hpp"
-#include "adaptmesh/core/delaunay.hpp"
+#include "adaptmesh/core/triangulate.hpp"
 
 namespace {
 
@@ -27,11 +29,59 @@ nb::tuple delaunay_arrays(const Points& array) {
         }
     }
     const std::size_t m = corners.size() / 3, n = points.size();
-    return nb::make_tuple(to_numpy(std::move(corners), {m, 3}), to_numpy(std::move(duplicate_of), {n}));
+    return nb::make_tuple(to_numpy(std::move(corners), {m, 3}),
+                          to_numpy(std::move(duplicate_of), {n}));
+}
+
+nb::tuple triangulate_arrays(const Points& points_in, const IndexPairs& segments_in,
+                             const Points& holes, const Points& seeds, bool nesting) {
+    const std::vector<Point> points = to_points(points_in);
+    std::vector<Segment> segments(segments_in.shape(0));
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+        segments[k] = {segments_in(k, 0), segments_in(k, 1)};
+    }
+    const CarveOptions options{to_points(holes), to_points(seeds), nesting};
+
+    std::vector<Index> corners, labels, ends, segment_of;
+    std::vector<std::uint8_t> is_boundary;
+    {
+        nb::gil_scoped_release release;
+        SignalPoll poll;
+        const ConstrainedTriangulation out = triangulate(points, segments, options, poll);
+        for (const Triangle& t : out.triangulation.triangles) {
+            corners.insert(corners.end(), t.v, t.v + 3);
+            labels.push_back(t.label);
+        }
+        for (const SubEdge& e : out.sub_edges) {
+            ends.insert(ends.end(), {e.a, e.b});
+            segment_of.push_back(e.segment);
+            is_boundary.push_back(e.is_boundary);
+        }
+    }
+    const std::size_t m = labels.size(), q = segment_of.size();
+    return nb::make_tuple(to_numpy(std::move(corners), {m, 3}), to_numpy(std::move(labels), {m}),
+                          to_numpy(std::move(ends), {q, 2}), to_numpy(std::move(segment_of), {q}),
+                          to_numpy(std::move(is_boundary), {q}).attr("view")("bool"));
 }
 
 }  // namespace
 
 void bind_triangulate(nb::module_& m) {
+    static nb::object fault = nb::steal(
+        PyErr_NewExceptionWithDoc("adaptmesh._core.Fault",
+                                  "Input that cannot be triangulated; args (kind, i, j, x, y), "
+                                  "see adaptmesh/core/fault.hpp.",
+                                  nullptr, nullptr));
+    m.attr("Fault") = fault;
+    nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
+        try {
+            std::rethrow_exception(thrown);
+        } catch (const Fault& f) {
+            const nb::tuple args = nb::make_tuple(f.kind, f.i, f.j, f.at.x, f.at.y);
+            PyErr_SetObject(fault.ptr(), args.ptr());
+        }
+    });
     m.def("delaunay", &delaunay_arrays, nb::arg("points"));
+    m.def("triangulate", &triangulate_arrays, nb::arg("points"), nb::arg("segments"),
+          nb::arg("holes"), nb::arg("seeds"), nb::arg("nesting"));
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -10,12 +11,11 @@
 #include "adaptmesh/core/hilbert.hpp"
 #include "adaptmesh/core/insert.hpp"
 #include "adaptmesh/core/locate.hpp"
+#include "adaptmesh/core/poll.hpp"
 #include "adaptmesh/core/triangulation.hpp"
 
 namespace adaptmesh {
 namespace detail {
-
-constexpr std::size_t POLL_EVERY = 1024;
 
 inline void check_points(const std::vector<Point>& points) {
     if (points.size() > std::size_t(MAX_TRIANGLES) / 2 - 2) {
@@ -23,7 +23,8 @@ inline void check_points(const std::vector<Point>& points) {
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Point p = points[i];
-        if (!std::isfinite(p.x) || !std::isfinite(p.y)) throw Fault("not_finite", Index(i), NONE, p);
+        if (!std::isfinite(p.x) || !std::isfinite(p.y))
+            throw Fault("not_finite", Index(i), NONE, p);
     }
     if (points.size() < 3) throw Fault("too_few_points", Index(points.size()));
 }
@@ -113,7 +114,7 @@ Triangulation delaunay(const std::vector<Point>& points, std::vector<Index>& dup
     std::size_t done = 0;
     detail::coarse_to_fine(count, [&, a = a, b = b, c = c](Index v) {
         if (v == a || v == b || v == c) return;
-        if (++done % detail::POLL_EVERY == 0) poll();
+        if (++done % POLL_EVERY == 0) poll();
         const Location where = locate(mesh, at, sorted[v], home);
         if (where.where == Where::on_vertex) {
             doubles.push_back({v, mesh.triangles[where.triangle].v[where.slot]});

@@ -18,6 +18,7 @@
 // border of the triangulation counts as locked without being asked about.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -29,15 +30,29 @@ using Index = std::int32_t;
 constexpr Index NONE = -1;
 constexpr Index GHOST = -1;  // the vertex at infinity, while a triangulation has one
 
-constexpr int next(int i) { return i == 2 ? 0 : i + 1; }
-constexpr int prev(int i) { return i == 0 ? 2 : i - 1; }
+constexpr int next(int i) {
+    return i == 2 ? 0 : i + 1;
+}
+constexpr int prev(int i) {
+    return i == 0 ? 2 : i - 1;
+}
 
 constexpr Index LOCK_BIT = 4;
-constexpr Index edge_code(Index triangle, int slot) { return triangle << 3 | slot; }
-constexpr Index triangle_of(Index code) { return code >> 3; }
-constexpr int slot_of(Index code) { return code & 3; }
-constexpr bool is_locked(Index code) { return (code & LOCK_BIT) != 0; }
-constexpr Index unlocked(Index code) { return code & ~LOCK_BIT; }
+constexpr Index edge_code(Index triangle, int slot) {
+    return triangle << 3 | slot;
+}
+constexpr Index triangle_of(Index code) {
+    return code >> 3;
+}
+constexpr int slot_of(Index code) {
+    return code & 3;
+}
+constexpr bool is_locked(Index code) {
+    return (code & LOCK_BIT) != 0;
+}
+constexpr Index unlocked(Index code) {
+    return code & ~LOCK_BIT;
+}
 
 // 2^28 triangles: what an edge code of 31 bits can number.
 constexpr Index MAX_TRIANGLES = Index(1) << 28;
@@ -258,6 +273,30 @@ class Triangulation {
         renamed[0] = triangle_at_[0];
         for (Index v = 0; v < vertex_count(); ++v) renamed[name[v] + 1] = triangle_at_[v + 1];
         triangle_at_.swap(renamed);
+    }
+
+    // Drops the triangles that `keep` refuses. Their place becomes NONE in those that stay, and a
+    // vertex left without triangles has none.
+    template <typename Keep>
+    void keep_triangles(const Keep& keep) {
+        std::vector<Index> moved_to(triangles.size(), NONE);
+        Index kept = 0;
+        for (Index t = 0; t < triangle_count(); ++t) {
+            if (keep(triangles[t])) moved_to[t] = kept++;
+        }
+        std::fill(triangle_at_.begin(), triangle_at_.end(), NONE);
+        for (Index t = 0; t < triangle_count(); ++t) {
+            if (moved_to[t] == NONE) continue;
+            Triangle T = triangles[t];
+            for (Index& code : T.n) {
+                if (code == NONE) continue;
+                const Index beyond = moved_to[triangle_of(code)];
+                code = beyond == NONE ? NONE : edge_code(beyond, slot_of(code)) | (code & LOCK_BIT);
+            }
+            triangles[moved_to[t]] = T;
+            for (Index v : T.v) set_triangle_at(v, moved_to[t]);
+        }
+        triangles.resize(kept);
     }
 
     // A visit mark no triangle bears.

@@ -1,0 +1,234 @@
+// From a constrained triangulation of everything to that of the domain: outside and holes removed,
+// regions numbered.
+//
+// All of it is about *components*: sets of triangles connected over edges that are not locked.
+// Component 0 is the outside, the one of the ghosts.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "adaptmesh/core/constrain.hpp"
+#include "adaptmesh/core/edge_lookup.hpp"
+#include "adaptmesh/core/fault.hpp"
+#include "adaptmesh/core/locate.hpp"
+#include "adaptmesh/core/point.hpp"
+#include "adaptmesh/core/poll.hpp"
+#include "adaptmesh/core/triangulation.hpp"
+
+namespace adaptmesh {
+
+struct CarveOptions {
+    std::vector<Point> holes;         // a point in each hole
+    std::vector<Point> region_seeds;  // a point in each named region
+    bool nesting = false;  // closed loops inside the domain are holes, loops in these not
+};
+
+namespace detail {
+
+class Carver {
+  public:
+    Carver(Triangulation& mesh, const std::vector<Point>& points, std::vector<SubEdge>& sub_edges)
+        : mesh_(mesh), points_(points), sub_edges_(sub_edges) {}
+
+    // Sets the label of every triangle to its component.
+    template <typename Poll>
+    void find_components(Poll& poll) {
+        constexpr Index UNSEEN = -1;
+        for (Triangle& t : mesh_.triangles) t.label = UNSEEN;
+        Index count = 0;
+        flood(mesh_.triangle_at(GHOST), count++);
+        for (Index t = 0; t < mesh_.triangle_count(); ++t) {
+            if (t % Index(POLL_EVERY) == 0) poll();
+            if (mesh_.triangles[t].label == UNSEEN) flood(t, count++);
+        }
+        is_removed_.assign(count, false);
+        is_removed_[0] = true;
+        region_.assign(count, 0);
+        find_sides();
+    }
+
+    void remove_holes(const std::vector<Point>& holes) {
+        for (std::size_t k = 0; k < holes.size(); ++k) {
+            const Index component = component_at(holes[k], Index(k), "hole_on_segment");
+            if (component == 0) throw Fault("hole_outside", Index(k), NONE, holes[k]);
+            is_removed_[component] = true;
+        }
+    }
+
+    // Removes every component that an even number of crossings of locked edges, the fewest
+    // possible, leads to from outside. Only edges between two components count: a segment that
+    // ends inside a component separates nothing.
+    void remove_nested() {
+        const Index count = Index(is_removed_.size());
+        std::vector<std::vector<Index>> adjacent(count);
+        for (const auto& [left, right] : sides_) {
+            if (left == right) continue;
+            adjacent[left].push_back(right);
+            adjacent[right].push_back(left);
+        }
+        std::vector<Index> depth(count, NONE), queue = {0};
+        depth[0] = 0;
+        for (std::size_t head = 0; head < queue.size(); ++head) {
+            const Index from = queue[head];
+            for (Index to : adjacent[from]) {
+                if (depth[to] != NONE) continue;
+                depth[to] = depth[from] + 1;
+                queue.push_back(to);
+            }
+        }
+        for (Index k = 0; k < count; ++k) is_removed_[k] = is_removed_[k] || depth[k] % 2 == 0;
+    }
+
+    void number_regions(const std::vector<Point>& seeds) {
+        for (std::size_t k = 0; k < seeds.size(); ++k) {
+            const Index component = component_at(seeds[k], Index(k), "region_seed_on_segment");
+            if (is_removed_[component])
+                throw Fault("region_seed_outside", Index(k), NONE, seeds[k]);
+            Index& region = region_[component];
+            if (region != 0) throw Fault("two_seeds_one_region", region - 1, Index(k), seeds[k]);
+            region = Index(k) + 1;
+        }
+    }
+
+    // A locked edge with the same removed component on both sides does not bound the domain: it is
+    // part of a boundary that is open somewhere. The vertex named is a loose end if there is one.
+    void check_closed() const {
+        std::vector<Index> degree(mesh_.vertex_count(), 0);
+        for (const SubEdge& e : sub_edges_) ++degree[e.a], ++degree[e.b];
+        const SubEdge* leak = nullptr;
+        for (std::size_t k = 0; k < sub_edges_.size(); ++k) {
+            if (sides_[k].first != sides_[k].second || !is_removed_[sides_[k].first]) continue;
+            const SubEdge& e = sub_edges_[k];
+            for (Index v : {e.a, e.b}) {
+                if (degree[v] == 1) throw Fault("open_boundary", v, e.segment, points_[v]);
+            }
+            if (leak == nullptr) leak = &e;
+        }
+        if (leak != nullptr) throw Fault("open_boundary", leak->a, leak->segment, points_[leak->a]);
+    }
+
+    void check_not_empty() const {
+        if (std::all_of(is_removed_.begin(), is_removed_.end(), [](bool gone) { return gone; })) {
+            throw Fault("empty_domain");
+        }
+    }
+
+    // Points that no segment uses have to be in the domain.
+    void check_points() const {
+        std::vector<char> is_used(mesh_.vertex_count(), false);
+        for (const SubEdge& e : sub_edges_) is_used[e.a] = is_used[e.b] = true;
+        for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+            const Index t = mesh_.triangle_at(v);
+            if (is_used[v] || t == NONE || !is_removed_[mesh_.triangles[t].label]) continue;
+            throw Fault("point_outside", v, NONE, points_[v]);
+        }
+    }
+
+    // Leaves only the domain: no ghosts, NONE beyond the border, regions as labels; and only the
+    // sub-edges that bound it or are inside.
+    void compact() {
+        std::vector<SubEdge> kept;
+        for (std::size_t k = 0; k < sub_edges_.size(); ++k) {
+            const bool left = !is_removed_[sides_[k].first], right = !is_removed_[sides_[k].second];
+            if (!left && !right) continue;
+            kept.push_back(sub_edges_[k]);
+            kept.back().is_boundary = left != right;
+        }
+        sub_edges_.swap(kept);
+        mesh_.keep_triangles([this](const Triangle& t) { return !is_removed_[t.label]; });
+        for (Triangle& t : mesh_.triangles) t.label = region_[t.label];
+    }
+
+  private:
+    Triangulation& mesh_;
+    const std::vector<Point>& points_;
+    std::vector<SubEdge>& sub_edges_;
+    std::vector<char> is_removed_;                // of each component
+    std::vector<Index> region_;                   // of each component, 0 without a seed
+    std::vector<std::pair<Index, Index>> sides_;  // the components beside each sub-edge
+    std::vector<Index> stack_;
+    Index last_found_ = 0;
+
+    void flood(Index start, Index component) {
+        mesh_.triangles[start].label = component;
+        stack_.push_back(start);
+        while (!stack_.empty()) {
+            const Index t = stack_.back();
+            stack_.pop_back();
+            for (Index code : mesh_.triangles[t].n) {
+                if (is_locked(code)) continue;
+                Triangle& beyond = mesh_.triangles[triangle_of(code)];
+                if (beyond.label == component) continue;
+                beyond.label = component;
+                stack_.push_back(triangle_of(code));
+            }
+        }
+    }
+
+    void find_sides() {
+        const EdgeLookup lookup(sub_edges_);
+        sides_.assign(sub_edges_.size(), {NONE, NONE});
+        for (const Triangle& t : mesh_.triangles) {
+            for (int slot = 0; slot < 3; ++slot) {
+                const Index a = t.v[next(slot)], b = t.v[prev(slot)];
+                if (!is_locked(t.n[slot]) || a > b) continue;
+                const Index right = mesh_.triangles[triangle_of(t.n[slot])].label;
+                sides_[lookup.find(a, b)] = {t.label, right};
+            }
+        }
+    }
+
+    Index segment_between(Index a, Index b) const {
+        return sub_edges_[EdgeLookup(sub_edges_).find(a, b)].segment;
+    }
+
+    // The component that point p is in; on a segment it is in none, which is a fault.
+    Index component_at(Point p, Index number, const char* fault_on_segment) {
+        const auto at = [this](Index v) { return points_[v]; };
+        const Location where = locate(mesh_, at, p, last_found_);
+        if (where.where == Where::outside) return 0;
+        last_found_ = where.triangle;
+        const Triangle& T = mesh_.triangles[where.triangle];
+        std::vector<Place> edges;
+        if (where.where == Where::on_edge) edges.push_back(where.place());
+        if (where.where == Where::on_vertex) {
+            mesh_.ball(T.v[where.slot], edges);
+            for (Place& e : edges) e.slot = next(e.slot);
+        }
+        for (const auto [t, slot] : edges) {
+            const Triangle& E = mesh_.triangles[t];
+            if (!is_locked(E.n[slot])) continue;
+            const Index segment = segment_between(E.v[next(slot)], E.v[prev(slot)]);
+            throw Fault(fault_on_segment, number, segment, p);
+        }
+        return T.label;
+    }
+};
+
+}  // namespace detail
+
+// Leaves of a constrained triangulation with ghosts the domain that its locked edges enclose: what
+// the outside or a hole reaches over unlocked edges is removed. `sub_edges` are the locked edges,
+// as `constrain` returned them; those outside are dropped, and is_boundary is set in the others.
+// Labels become 1 + the number of the region seed, 0 where there is none. Vertex numbers stay; a
+// vertex of no triangle has triangle_at NONE. Where two parts of the domain meet in one vertex
+// only, `ball` of that vertex sees one of them.
+template <typename Poll>
+void carve(Triangulation& mesh, const std::vector<Point>& points, std::vector<SubEdge>& sub_edges,
+           const CarveOptions& options, Poll& poll) {
+    detail::Carver work(mesh, points, sub_edges);
+    work.find_components(poll);
+    work.check_closed();
+    work.remove_holes(options.holes);
+    if (options.nesting) work.remove_nested();
+    work.check_closed();
+    work.number_regions(options.region_seeds);
+    work.check_not_empty();
+    work.check_points();
+    work.compact();
+}
+
+}  // namespace adaptmesh
