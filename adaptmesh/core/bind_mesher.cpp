@@ -20,8 +20,8 @@ std::vector<Point> points_in(const Points& array) {
     return out;
 }
 
-std::vector<std::array<Index, 2>> pairs_in(const IndexPairs& array) {
-    std::vector<std::array<Index, 2>> out(array.shape(0));
+std::vector<Segment> segments_in(const IndexPairs& array) {
+    std::vector<Segment> out(array.shape(0));
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = {array(i, 0), array(i, 1)};
     return out;
 }
@@ -82,12 +82,12 @@ class Mesher {
         expect_rows(tensors.shape(0), n, "tensors");
         expect_rows(held_by.shape(0), n, "held_by");
         const std::vector<Point> at = points_in(points);
-        const auto pairs = pairs_in(segments);
-        const auto hole_points = points_in(holes), seed_points = points_in(seeds);
+        const std::vector<Segment> pieces = segments_in(segments);
+        const CarveOptions options{points_in(holes), points_in(seeds), nesting};
 
         nb::gil_scoped_release release;
         ConstrainedTriangulation outline =
-            triangulate(at, pairs, hole_points, seed_points, nesting, poll_);
+            triangulate(at, pieces, options, poll_);
         mesh_.topology = std::move(outline.triangulation);
         constrained_ = std::move(outline.sub_edges);
         for (std::size_t i = 0; i < n; ++i)
