@@ -41,7 +41,8 @@ class EdgePlacement:
 class Smoothing:
     """How often vertices are moved, and from which quality on edges are swapped for shape."""
 
-    rounds: int = 3
+    rounds: int = 2
+    active_rounds: int = 4
     swap_below: float = 0.5
 
 
@@ -174,7 +175,17 @@ def optimise(
         mesher.smooth()
         mesher.set_metrics(0, field(mesher.points()))
         mesher.swap()
+    for _ in range(options.active_rounds):
+        mesher.collapse_short_edges()
+        before = mesher.vertex_count
+        mesher.split_long_edges()
+        mesher.set_metrics(before, field(mesher.points(before)))
+        mesher.swap()
+        mesher.search_active(0.12, 2)
+        mesher.set_metrics(0, field(mesher.points()))
+        mesher.swap()
     mesher.swap_worst(options.swap_below)
+    mesher.compact()
 
 
 def finished_mesh(domain: Domain, outline: Outline, mesher: _core.Mesher) -> Mesh:

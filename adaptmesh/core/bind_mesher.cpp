@@ -1,6 +1,7 @@
 // The mesher as Python sees it: stages that work on the mesh in place, and arrays in and out.
 #include "adaptmesh/core/bindings.hpp"
 #include "adaptmesh/core/edges.hpp"
+#include "adaptmesh/core/improve.hpp"
 #include "adaptmesh/core/metric_mesh.hpp"
 #include "adaptmesh/core/smooth.hpp"
 #include "adaptmesh/core/swap.hpp"
@@ -122,6 +123,28 @@ class Mesher {
         return smooth_everywhere(mesh_, poll_);
     }
 
+    Index collapse_short_edges() {
+        nb::gil_scoped_release release;
+        return adaptmesh::collapse_short_edges(mesh_, {}, poll_);
+    }
+
+    Index split_long_edges() {
+        nb::gil_scoped_release release;
+        return adaptmesh::split_long_edges(mesh_, {}, poll_);
+    }
+
+    Index search_active(double step, int rounds) {
+        nb::gil_scoped_release release;
+        return adaptmesh::search_active(mesh_, {}, step, rounds, poll_);
+    }
+
+    // Drops vanished vertices and triangles, and numbers the rest anew.
+    void compact() {
+        nb::gil_scoped_release release;
+        const std::vector<Index> name = mesh_.compact();
+        for (SubEdge& e : constrained_) e.a = name[e.a], e.b = name[e.b];
+    }
+
     // Positions and metrics of the vertices from number `first` on.
     nb::object points(std::size_t first) const {
         std::vector<double> out;
@@ -202,6 +225,10 @@ void bind_mesher(nb::module_& m) {
         .def("swap", &Mesher::swap)
         .def("swap_worst", &Mesher::swap_worst, nb::arg("below"))
         .def("smooth", &Mesher::smooth)
+        .def("collapse_short_edges", &Mesher::collapse_short_edges)
+        .def("split_long_edges", &Mesher::split_long_edges)
+        .def("search_active", &Mesher::search_active, nb::arg("step"), nb::arg("rounds"))
+        .def("compact", &Mesher::compact)
         .def("points", &Mesher::points, nb::arg("first") = 0)
         .def("set_metrics", &Mesher::set_metrics, nb::arg("first"), nb::arg("tensors"))
         .def("triangles", &Mesher::triangles)

@@ -61,6 +61,22 @@ class MetricMesh {
         return 2 * std::sqrt(3.0) * area2 * metrics::sqrt_det(m) / sides;
     }
 
+    // Drops dead triangles and the vertices that are left without any; returns the new number of
+    // each vertex, NONE for the dropped.
+    std::vector<Index> compact() {
+        topology.keep_triangles([](const Triangle& t) { return t.v[0] != DEAD; });
+        std::vector<Index> name(vertices.size(), NONE);
+        Index kept = 0;
+        for (Index v = 0; v < Index(vertices.size()); ++v) {
+            if (topology.triangle_at(v) == NONE) continue;
+            vertices[kept] = vertices[v];
+            name[v] = kept++;
+        }
+        vertices.resize(kept);
+        topology.drop_vertices(name, kept);
+        return name;
+    }
+
     bool is_positive(Index a, Index b, Index c) const { return orient2d(at(a), at(b), at(c)) > 0; }
 
     // Whether vertex d lies inside the circle through the counter-clockwise a, b, c in the constant

@@ -102,6 +102,7 @@ Index swap_everywhere(MetricMesh& mesh, const Criterion& criterion, int most_pas
         const Index n = mesh.topology.triangle_count();
         for (Index t = 0; t < n; ++t) {
             if (t % 1024 == 0) poll();
+            if (mesh.topology.is_dead(t)) continue;
             for (int slot = 0; slot < 3; ++slot) {
                 // each edge once; the slots of t mean other edges after a flip
                 if (triangle_of(mesh.triangle(t).n[slot]) < t && try_flip(mesh, {t, slot}, criterion)) {

@@ -29,6 +29,7 @@ using Index = std::int32_t;
 
 constexpr Index NONE = -1;
 constexpr Index GHOST = -1;  // the vertex at infinity, while a triangulation has one
+constexpr Index DEAD = -2;   // first vertex of a triangle that has vanished
 
 constexpr int next(int i) {
     return i == 2 ? 0 : i + 1;
@@ -220,6 +221,43 @@ class Triangulation {
         return {t2, u2};
     }
 
+    // Pulls vertex `from` into vertex `to`, a neighbour of it: the triangles on their edge vanish, the
+    // others around `from` get `to` for a corner. `around` is the ball of `from`.
+    //
+    //        q---r                q---r          (from, p, to) and (from, to, q) vanish: the edges
+    //       / \ / \              / \ / \         (p, to) and (p, from) become one, so do (q, to)
+    //      s--from-to    ->     s----to          and (q, from), locked if either was.
+    //       \ / \ /              \ / \ /
+    //        t---p                t---p          Vanished triangles are dead until they are dropped.
+    void collapse(const std::vector<Place>& around, Index from, Index to) {
+        for (Place place : around) {
+            Triangle& T = triangles[place.triangle];
+            const int i = place.slot;
+            const bool is_next = T.v[next(i)] == to;
+            if (!is_next && T.v[prev(i)] != to) {
+                T.v[i] = to;
+                T.fresh = 1;
+                continue;
+            }
+            const Index opposite_from = T.n[i];
+            const Index opposite_to = T.n[is_next ? next(i) : prev(i)];
+            const Index side = T.v[is_next ? prev(i) : next(i)];
+            join(opposite_from, opposite_to);
+            const Index left = opposite_from != NONE ? opposite_from : opposite_to;
+            if (left != NONE) {
+                set_triangle_at(side, triangle_of(left));
+                set_triangle_at(to, triangle_of(left));
+            }
+            T.v[0] = DEAD;
+        }
+        set_triangle_at(from, NONE);
+        for (Place place : around) {
+            if (!is_dead(place.triangle)) set_triangle_at(to, place.triangle);
+        }
+    }
+
+    bool is_dead(Index t) const { return triangles[t].v[0] == DEAD; }
+
     // The triangles around a vertex, counter-clockwise, each with the slot of the vertex in it;
     // starts at the border if the vertex is on it. Returns whether the ball is closed.
     //
@@ -275,6 +313,18 @@ class Triangulation {
         triangle_at_.swap(renamed);
     }
 
+    // Gives vertex v the number name[v] < kept; those with name NONE have no triangle and vanish.
+    // Numbers keep their order.
+    void drop_vertices(const std::vector<Index>& name, Index kept) {
+        for (Triangle& t : triangles) {
+            for (Index& v : t.v) v = name[v];
+        }
+        for (Index v = 0; v < vertex_count(); ++v) {
+            if (name[v] != NONE) set_triangle_at(name[v], triangle_at(v));
+        }
+        triangle_at_.resize(kept + 1);
+    }
+
     // Drops the triangles that `keep` refuses. Their place becomes NONE in those that stay, and a
     // vertex left without triangles has none.
     template <typename Keep>
@@ -309,6 +359,14 @@ class Triangulation {
     }
 
   private:
+    // Two triangles become neighbours across the edges with these codes, each as its own triangle
+    // sees the other: code g is the edge of triangle_of(g) that faced what is now gone.
+    void join(Index g, Index h) {
+        const Index lock = (g | h) & LOCK_BIT;
+        if (g != NONE) triangles[triangle_of(g)].n[slot_of(g)] = h == NONE ? NONE : h | lock;
+        if (h != NONE) triangles[triangle_of(h)].n[slot_of(h)] = g == NONE ? NONE : g | lock;
+    }
+
     std::vector<Index> triangle_at_ = {NONE};  // shifted by one: the ghost vertex has a place too
     std::uint32_t stamp_ = 0;
 };

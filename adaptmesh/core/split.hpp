@@ -1,0 +1,66 @@
+// Splitting: a long edge gets a vertex in its metric middle.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "adaptmesh/core/metric_mesh.hpp"
+#include "adaptmesh/core/swap.hpp"
+
+namespace adaptmesh {
+
+struct SplitOptions {
+    double long_edge = 1.4142135623730950;  // sqrt(2): from here on an edge is not unit
+    double nearest = 0.6;                   // no new edge shorter than this, unless ...
+    double very_long = 2.5;                 // ... the edge is longer than this
+    double good_quality = 0.3;              // no new triangle worse than this, unless ...
+    double quality_kept = 0.3;              // ... this share of the old worst is kept
+};
+
+class Splitter {
+  public:
+    Splitter(MetricMesh& mesh, const SplitOptions& options) : mesh_(mesh), options_(options) {}
+
+    // Splits an edge of this length that is not locked; the new vertex is the last one.
+    bool try_split(Place edge, double length) {
+        const Quad q = quad_around(mesh_.topology, edge);
+        const Vertex &a = mesh_.vertices[q.a], &b = mesh_.vertices[q.b];
+        const Vertex &c = mesh_.vertices[q.c], &d = mesh_.vertices[q.d];
+        const Vertex p = middle(b, c);
+        if (length < options_.very_long &&
+            std::min(MetricMesh::length(p, a), MetricMesh::length(p, d)) < options_.nearest)
+            return false;
+        const double then = std::min(std::min(MetricMesh::quality(a, b, p), MetricMesh::quality(a, p, c)),
+                                     std::min(MetricMesh::quality(d, c, p), MetricMesh::quality(d, p, b)));
+        const double now = std::min(MetricMesh::quality(a, b, c), MetricMesh::quality(d, c, b));
+        if (then < options_.good_quality && then < options_.quality_kept * now) return false;
+        if (orient2d(a.at, b.at, p.at) <= 0 || orient2d(a.at, p.at, c.at) <= 0 ||
+            orient2d(d.at, c.at, p.at) <= 0 || orient2d(d.at, p.at, b.at) <= 0)
+            return false;
+
+        const Index u = triangle_of(mesh_.triangle(edge.triangle).n[edge.slot]);
+        const Index v = mesh_.topology.add_vertex();
+        mesh_.vertices.push_back(p);
+        const auto added = mesh_.topology.split_edge(edge, v);
+        around_.assign({edge.triangle, u, added[0], added[1]});
+        legalise_around(mesh_, v, around_, DelaunayCriterion{});
+        return true;
+    }
+
+  private:
+    // Half way in the metric, the size taken to be geometric along the edge: log((1 + r) / 2) / log r
+    // with r the ratio of the speeds at its ends.
+    static Vertex middle(const Vertex& b, const Vertex& c) {
+        const double dx = c.at.x - b.at.x, dy = c.at.y - b.at.y;
+        const double r = std::sqrt(c.metric.q(dx, dy) / b.metric.q(dx, dy));
+        const double s = std::abs(r - 1) < 1e-3 ? 0.5 : std::log(0.5 * (1 + r)) / std::log(r);
+        return Vertex::make({b.at.x + s * dx, b.at.y + s * dy}, metrics::log_mean(b.metric, c.metric, s));
+    }
+
+    MetricMesh& mesh_;
+    SplitOptions options_;
+    std::vector<Index> around_;
+};
+
+}  // namespace adaptmesh
