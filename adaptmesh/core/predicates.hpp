@@ -14,7 +14,7 @@
 // The scheme of growing effort, and the way to derive the bounds, are those of Shewchuk (1997),
 // Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates. Other than
 // there, the incircle determinant is written with two angles (see incircle), and the last stage is
-// in integers, which know no overflow and took less time than expansions would.
+// in integers instead of expansions, for integers know neither overflow nor underflow.
 //
 // Throughout u = 2^-53: fl(x op y) = (x op y)(1 + d) with |d| <= u; a product may besides lose
 // 2^-1075 by underflow, sums never do. Rounding is to nearest and subnormals are kept (the default
