@@ -10,8 +10,8 @@
 #include <cfloat>
 #include <limits>
 
-#if defined(__FAST_MATH__)
-#error "adaptmesh: the predicates are wrong under -ffast-math"
+#if defined(__FAST_MATH__) || defined(_M_FP_FAST)
+#error "adaptmesh: the predicates are wrong with fast math"
 #endif
 
 namespace adaptmesh {
