@@ -64,8 +64,8 @@ class Background(ControlSpace):
             self._search = _core.Background(self.points, self.logs, self.triangles)
         except ValueError as error:
             raise MetricError(f"the triangles are not a mesh: {error}") from error
-        corners = self.points[np.unique(self.triangles)]
-        self._border = _BORDER * float(np.hypot(*np.ptp(corners, axis=0)))
+        extent = np.ptp(self.points[self.triangles.ravel()], axis=0)
+        self._border = _BORDER * float(np.hypot(*extent))
 
     @classmethod
     def on(

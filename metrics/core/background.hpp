@@ -1,11 +1,12 @@
 // The control space carried by a mesh: log tensors at the vertices, linear on each triangle.
 //
 // A look-up walks from a triangle that the caller remembers to the one that has the point, each
-// step across the edge that the point lies furthest behind. In a mesh with holes and corners a walk
+// step across the edge that the point lies furthest behind; without a hint, from a triangle that a
+// grid has for the place. In a mesh with holes and corners a walk
 // may end at the border with the point still beyond; and on a mesh that is not Delaunay it may go
-// in circles. So a walk is only ever a guess that is right nearly always: when it meets the border
-// or has gone MAX_STEPS steps, a tree of boxes gives the definite answer, which triangle has the
-// point, or, for a point outside, which border edge is nearest.
+// in circles. So a walk is only ever an attempt, which nearly always succeeds: when it meets the
+// border or has gone MAX_STEPS steps, a tree of boxes gives the definite answer, which triangle has
+// the point, or, for a point outside, which border edge is nearest.
 //
 // Constant after construction: any number of threads may look up at once.
 #pragma once
@@ -14,12 +15,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "metrics/core/boxtree.hpp"
+#include "metrics/core/seedgrid.hpp"
 #include "metrics/core/tensor.hpp"
 
 namespace metrics {
@@ -54,13 +57,14 @@ class Background {
         }
         find_neighbours();
         plant_trees();
+        sow_seeds();
     }
 
     Index triangle_count() const { return Index(triangles_.size()); }
     Index neighbour(Index triangle, int edge) const { return triangles_[triangle].n[edge]; }
 
-    // The metric at (x, y). `triangle` is where to start from (any number that is not a triangle
-    // when nothing is known), and becomes the triangle of the point.
+    // The metric at (x, y). `triangle` is where to start from (-1, or any number that is not a
+    // triangle, when nothing is known), and becomes the triangle of the point.
     Tensor at(double x, double y, Index& triangle) const {
         const Location place = locate(x, y, triangle);
         triangle = place.triangle;
@@ -76,7 +80,9 @@ class Background {
 
     Location locate(double x, double y, Index hint) const {
         Location place;
-        if (walk(x, y, hint, place) || search(x, y, place)) return place;
+        const bool known = hint >= 0 && hint < triangle_count();
+        if (walk(x, y, known ? hint : seeds_.near(x, y), place) || search(x, y, place))
+            return place;
         return nearest_on_border(x, y);
     }
 
@@ -127,7 +133,6 @@ class Background {
     }
 
     bool walk(double x, double y, Index start, Location& place) const {
-        if (start < 0 || start >= triangle_count()) return false;
         for (int step = 0; step < MAX_STEPS; ++step) {
             const Triangle& t = triangles_[start];
             double w[3];
@@ -190,43 +195,58 @@ class Background {
         return share;
     }
 
-    // Sides in the order of their two vertices, so that the two of one edge are consecutive.
+    // Sides sorted by their smaller vertex (by counting), then by the other: the two sides of one
+    // edge become consecutive.
     void find_neighbours() {
-        struct Entry {
-            Index low, high;
-            Side side;
-            bool rising;
-        };
-        std::vector<Entry> sides;
-        sides.reserve(3 * triangles_.size());
+        std::vector<std::size_t> first(vertices_.size() + 1, 0);
+        for_each_side([&](Index low, Index, Side) { ++first[low + 1]; });
+        std::partial_sum(first.begin(), first.end(), first.begin());
+        std::vector<EdgeSide> sides(3 * triangles_.size());
+        std::vector<std::size_t> next(first.begin(), first.end() - 1);
+        for_each_side([&](Index low, Index high, Side side) { sides[next[low]++] = {high, side}; });
+        for (std::size_t low = 0; low < vertices_.size(); ++low) {
+            const auto begin = sides.begin() + first[low], end = sides.begin() + first[low + 1];
+            std::sort(begin, end, [](const EdgeSide& s, const EdgeSide& t) {
+                return s.high != t.high ? s.high < t.high : s.side.triangle < t.side.triangle;
+            });
+            for (auto s = begin; s != end;) {
+                const auto one_edge = [&](const EdgeSide& t) { return t.high == s->high; };
+                const auto stop = std::find_if_not(s, end, one_edge);
+                if (stop - s > 1) join(Index(low), s->high, s->side, s[1].side, stop - s);
+                s = stop;
+            }
+        }
+    }
+
+    struct EdgeSide {
+        Index high;
+        Side side;
+    };
+
+    // Calls visit(smaller vertex, larger vertex, side) for every side of every triangle.
+    template <typename Visit>
+    void for_each_side(Visit visit) const {
         for (Index t = 0; t < triangle_count(); ++t) {
             for (int i = 0; i < 3; ++i) {
-                const Index from = triangles_[t].v[(i + 1) % 3], to = triangles_[t].v[(i + 2) % 3];
-                sides.push_back({std::min(from, to), std::max(from, to), {t, i}, from < to});
+                const Index from = start(t, i), to = start(t, (i + 1) % 3);
+                visit(std::min(from, to), std::max(from, to), Side{t, i});
             }
         }
-        std::sort(sides.begin(), sides.end(), [](const Entry& s, const Entry& t) {
-            return s.low != t.low ? s.low < t.low : s.high < t.high;
-        });
-        for (std::size_t k = 0; k < sides.size();) {
-            const Entry& s = sides[k];
-            std::size_t end = k + 1;
-            while (end < sides.size() && sides[end].low == s.low && sides[end].high == s.high)
-                ++end;
-            if (end - k > 2 || (end - k == 2 && sides[k + 1].rising == s.rising)) {
-                throw std::invalid_argument("triangles " + std::to_string(s.side.triangle) +
-                                            " and " + std::to_string(sides[k + 1].side.triangle) +
-                                            " overlap: they lie on the same side of the edge (" +
-                                            std::to_string(s.low) + ", " + std::to_string(s.high) +
-                                            "), or one more triangle shares it");
-            }
-            if (end - k == 2) {
-                const Side &here = s.side, &there = sides[k + 1].side;
-                triangles_[here.triangle].n[here.edge] = there.triangle;
-                triangles_[there.triangle].n[there.edge] = here.triangle;
-            }
-            k = end;
+    }
+
+    // The vertex that side i of triangle t runs from, counter-clockwise.
+    Index start(Index t, int i) const { return triangles_[t].v[(i + 1) % 3]; }
+
+    void join(Index low, Index high, Side here, Side there, std::ptrdiff_t count) {
+        if (count > 2 || start(here.triangle, here.edge) == start(there.triangle, there.edge)) {
+            throw std::invalid_argument(
+                "triangles " + std::to_string(here.triangle) + " and " +
+                std::to_string(there.triangle) + " overlap at the edge (" + std::to_string(low) +
+                ", " + std::to_string(high) +
+                "): they lie on the same side of it, or it has more than two triangles");
         }
+        triangles_[here.triangle].n[here.edge] = there.triangle;
+        triangles_[there.triangle].n[there.edge] = here.triangle;
     }
 
     void plant_trees() {
@@ -248,6 +268,16 @@ class Background {
         border_tree_ = BoxTree(border_boxes);
     }
 
+    void sow_seeds() {
+        seeds_ = SeedGrid(triangle_tree_.bounds(), triangles_.size());
+        for (Index t = 0; t < triangle_count(); ++t) {
+            const Index* v = triangles_[t].v;
+            const Vertex &p = vertices_[v[0]], &q = vertices_[v[1]], &r = vertices_[v[2]];
+            seeds_.put((p.x + q.x + r.x) / 3, (p.y + q.y + r.y) / 3, t);
+        }
+        seeds_.fill_gaps();
+    }
+
     void include(Box& box, Index t, int corner) const {
         const Vertex& vertex = vertices_[triangles_[t].v[corner]];
         box.include(vertex.x, vertex.y);
@@ -257,6 +287,7 @@ class Background {
     std::vector<Triangle> triangles_;
     std::vector<Side> border_;
     BoxTree triangle_tree_, border_tree_;
+    SeedGrid seeds_;
 };
 
 }  // namespace metrics

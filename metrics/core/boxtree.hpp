@@ -54,6 +54,9 @@ class BoxTree {
         }
     }
 
+    // The box around all.
+    Box bounds() const { return levels_.empty() ? Box() : levels_.back().front(); }
+
     // Calls visit(item) for each item whose box contains the point, until it returns true.
     template <typename Visit>
     void containing(double x, double y, Visit visit) const {
