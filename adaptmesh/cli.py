@@ -42,13 +42,6 @@ app = typer.Typer(
 )
 
 
-class Placement(str, Enum):
-    """Where new points go."""
-
-    front = "front"
-    edges = "edges"
-
-
 class Show(str, Enum):
     """What the colours of a picture mean."""
 
@@ -90,9 +83,9 @@ MaxVertices = Annotated[
     int | None,
     typer.Option(min=3, metavar="N", help="Refuse, before meshing, to make more than N vertices."),
 ]
-PlacementChoice = Annotated[
-    Placement | None,
-    typer.Option(help="Place new points ahead of a front, or along long edges."),
+Placement = Annotated[
+    str | None,
+    typer.Option(metavar="NAME", help="How new points are placed, e.g. 'edges': along long edges."),
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
 
@@ -136,7 +129,7 @@ def generate(
     metric: Metric = None,
     plot: Picture = None,
     max_vertices: MaxVertices = None,
-    placement: PlacementChoice = None,
+    placement: Placement = None,
     make_valid: Annotated[
         bool, typer.Option("--make-valid", help="Repair polygons that cross themselves.")
     ] = False,
@@ -164,7 +157,7 @@ def adapt(
     metric: Metric = None,
     plot: Picture = None,
     max_vertices: MaxVertices = None,
-    placement: PlacementChoice = None,
+    placement: Placement = None,
     quiet: Quiet = False,
 ) -> None:
     """Adapt a mesh to a metric, keeping its boundaries, regions and names."""
@@ -319,16 +312,19 @@ def _control_space(size: str | None, metric: Path | None, mesh_file: Path) -> Co
 
 @contextmanager
 def _meshing(
-    quiet: bool, max_vertices: int | None, placement: Placement | None
+    quiet: bool, max_vertices: int | None, placement: str | None
 ) -> Iterator[dict[str, object]]:
     """The options of `generate` and `adapt` that were given, and a progress bar while they run."""
+    from .generate import PLACEMENTS
     from .progress import TerminalProgress
 
     options: dict[str, object] = {}
     if max_vertices is not None:
         options["max_vertices"] = max_vertices
     if placement is not None:
-        options["placement"] = placement.value
+        if placement not in PLACEMENTS:
+            raise typer.BadParameter(f"--placement is one of {', '.join(PLACEMENTS)}")
+        options["placement"] = placement
     if quiet:
         yield options
         return

@@ -172,7 +172,7 @@ class Wing:
 
     @cached_property
     def contour(self) -> Floats:
-        """Points (n, 2), dense near both edges, counter-clockwise from trailing edge round to it."""
+        """Points (n, 2), dense near both edges, counter-clockwise round from the trailing edge."""
         theta = np.linspace(0.0, 2.0 * np.pi, 8001)
         x = 0.5 * (1.0 + np.cos(theta))
         root = np.abs(np.cos(0.5 * theta))

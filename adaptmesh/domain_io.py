@@ -54,27 +54,29 @@ def read_domain(path: str | os.PathLike[str], *, make_valid: bool = False) -> Do
     """
     path = Path(path)
     suffix = path.suffix.lower()
-    if suffix in GEOJSON_SUFFIXES:
-        return _read_geojson(path, make_valid)
-    if suffix == ".poly":
-        return read_poly(path)
+    try:
+        if suffix in GEOJSON_SUFFIXES:
+            return _read_geojson(path, make_valid)
+        if suffix == ".poly":
+            return read_poly(path)
+        return _domain_of_mesh_file(path)
+    except DomainError as error:
+        raise DomainError(f"{path}: {error}") from error
+
+
+def _domain_of_mesh_file(path: Path) -> Domain:
     from .io import read
 
-    domain = read(path).domain
-    if domain is None:
-        raise DomainError(f"{path} holds a mesh without boundary edges, and so without a domain")
-    return domain
+    mesh = read(path)
+    return Domain.of_mesh(mesh) if mesh.domain is None else mesh.domain
 
 
 def _read_geojson(path: Path, make_valid: bool) -> Domain:
     features = list(_features(_parsed(path), path))
     if not features:
-        raise DomainError(f"{path} has no features: nothing to mesh")
+        raise DomainError("it has no features: there is nothing to mesh")
     polygons = [_polygon(geometry, label, path) for label, _, geometry in features]
-    try:
-        return domain_of_polygons(polygons, [n for _, n, _ in features], make_valid=make_valid)
-    except DomainError as error:
-        raise DomainError(f"{path}: {error}") from error
+    return domain_of_polygons(polygons, [name for _, name, _ in features], make_valid=make_valid)
 
 
 def _parsed(path: Path) -> dict[str, Any]:
@@ -122,7 +124,7 @@ def _polygon(geometry: Any, label: str, path: Path) -> Any:
     kind = geometry.get("type") if isinstance(geometry, dict) else None
     if kind not in ("Polygon", "MultiPolygon"):
         raise DomainError(
-            f"{path}: {label} is {'nothing' if kind is None else f'a {kind}'}, and a domain is "
+            f"{label} is {'nothing' if kind is None else f'a {kind}'}, and a domain is "
             "made of Polygon and MultiPolygon: remove that feature, or make a polygon of it "
             "(shapely.polygonize for closed lines, shapely.buffer for points and open ones)"
         )
