@@ -5,11 +5,12 @@ import subprocess
 import sys
 from pathlib import Path
 
-import adaptmesh as am
 import numpy as np
 import pytest
-from adaptmesh.cli import app
 from typer.testing import CliRunner
+
+import adaptmesh as am
+from adaptmesh.cli import app
 
 SQUARE = {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]]}
 BOWTIE = {"type": "Polygon", "coordinates": [[[0, 0], [1, 1], [1, 0], [0, 1], [0, 0]]]}

@@ -1,8 +1,9 @@
 """The cases of the demo, at coarse sizes."""
 
-import adaptmesh as am
 import numpy as np
 import pytest
+
+import adaptmesh as am
 from adaptmesh import demo
 
 
@@ -49,9 +50,10 @@ def test_points_on_the_wall_are_a_step_apart():
     assert np.abs(np.log(step / spacing)).max() < 0.1
 
 
-def test_distance_and_direction_from_the_wall(rng=np.random.default_rng(3)):
+def test_distance_and_direction_from_the_wall():
     import shapely
 
+    rng = np.random.default_rng(3)
     wing = demo.Wing(h_edges=2e-4)
     outline = shapely.linestrings(wing.contour)
     i = rng.integers(len(wing.contour), size=500)

@@ -3,8 +3,9 @@
 import json
 from pathlib import Path
 
-import adaptmesh as am
 import pytest
+
+import adaptmesh as am
 from adaptmesh.errors import DomainError, FormatError
 
 ICELAND = Path(__file__).parents[2] / "examples" / "data" / "iceland.geojson"

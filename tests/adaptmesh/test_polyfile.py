@@ -1,6 +1,7 @@
 """Triangle's .poly format."""
 
 import pytest
+
 from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.polyfile import read_poly
 
