@@ -271,7 +271,7 @@ def _fail(message: str) -> NoReturn:
     raise typer.Exit(EXIT_BAD) from None
 
 
-def _show_warning(message: Warning | str, *_: object) -> None:
+def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
     typer.echo(typer.style("warning: ", fg=typer.colors.YELLOW, bold=True) + str(message), err=True)
 
 

@@ -65,12 +65,12 @@ def domain_of_polygons(
     labels = [_label(i, name) for i, name in enumerate(names)]
     checked = [_checked(p, label, make_valid) for p, label in zip(polygons, labels, strict=True)]
 
-    grid = GRID * _extent(checked)
+    grid = _grid(checked)
     boundaries = [shapely.boundary(p) for p in checked]
     lines = shapely.unary_union(boundaries, grid_size=grid if make_valid else None)
     faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(lines)))
     seeds = shapely.point_on_surface(faces)
-    owners = _owners(faces, seeds, checked, labels, grid, make_valid)
+    owners = _owners(faces, seeds, checked, labels, make_valid)
 
     places = shapely.get_coordinates(seeds)
     regions: dict[str, Floats] = {}
@@ -80,6 +80,7 @@ def domain_of_polygons(
             regions[name] = places[mine]
     holes = places[[owner is None for owner in owners]]
     points, segments = _segments(lines)
+    _check_apart(points, segments, 0.25 * grid)
     return Domain(points, segments, holes=holes, regions=regions)
 
 
@@ -87,11 +88,12 @@ def _label(number: int, name: str | None) -> str:
     return f"polygon {number}" if name is None else f"polygon {number} ({name!r})"
 
 
-def _extent(polygons: Sequence[Any]) -> float:
+def _grid(polygons: Sequence[Any]) -> float:
+    """The power of ten at or below `GRID` of the extent: decimal coordinates snap to themselves."""
     import shapely
 
     x0, y0, x1, y1 = shapely.total_bounds(np.asarray(polygons, dtype=object))
-    return float(max(x1 - x0, y1 - y0))
+    return float(10.0 ** np.floor(np.log10(GRID * max(x1 - x0, y1 - y0))))
 
 
 def _checked(polygon: Any, label: str, make_valid: bool) -> Any:
@@ -133,8 +135,7 @@ def _polygonal(geometry: Any) -> Any:
     import shapely
 
     parts = shapely.get_parts(shapely.get_parts(geometry))
-    areal = [p for p in parts if shapely.get_type_id(p) == shapely.GeometryType.POLYGON]
-    return shapely.multipolygons(areal)
+    return shapely.multipolygons(parts[shapely.get_type_id(parts) == shapely.GeometryType.POLYGON])
 
 
 def _owners(
@@ -142,7 +143,6 @@ def _owners(
     seeds: Any,
     polygons: Sequence[Any],
     labels: Sequence[str],
-    grid: float,
     make_valid: bool,
 ) -> list[int | None]:
     """For each face the polygon that it lies in, None for a hole."""
@@ -152,17 +152,10 @@ def _owners(
     tree = shapely.STRtree(polygons)
     for face, seed in zip(faces, seeds, strict=True):
         inside = sorted(int(i) for i in tree.query(seed, predicate="intersects"))
-        thickness = 2.0 * shapely.area(face) / shapely.length(face)
-        place = f"({seed.x:.10g}, {seed.y:.10g})"
-        if thickness < grid:
-            raise DomainError(
-                f"a sliver {thickness:.3g} thick at {place}, between borders that nearly coincide: "
-                "let it be closed with make_valid=True (on the command line --make-valid), or snap "
-                "the polygons to a grid with shapely.set_precision"
-            )
         if len(inside) > 1 and not make_valid:
             raise DomainError(
-                f"{labels[inside[0]]} and {labels[inside[1]]} overlap at {place}, on an area of "
+                f"{labels[inside[0]]} and {labels[inside[1]]} overlap at ({seed.x:.10g}, "
+                f"{seed.y:.10g}), on an area of "
                 f"{shapely.area(face):.6g}: subtract one from the other (shapely.difference), or "
                 "let the first one keep it: make_valid=True (on the command line --make-valid)"
             )
@@ -181,3 +174,21 @@ def _segments(lines: Any) -> tuple[Floats, NDArray[np.int64]]:
     same_line = line[:-1] == line[1:]
     segments = np.stack([vertex[:-1], vertex[1:]], axis=1)[same_line]
     return points, np.unique(np.sort(segments, axis=1), axis=0)
+
+
+def _check_apart(points: Floats, segments: NDArray[np.int64], least: float) -> None:
+    """Refuse a point that lies almost, but not quite, on a segment: rounding made two of one."""
+    import shapely
+
+    tree = shapely.STRtree(shapely.linestrings(points[segments]))
+    i, k = tree.query(shapely.points(points), predicate="dwithin", distance=least)
+    near = np.flatnonzero((segments[k] != i[:, None]).all(axis=1))
+    if len(near):
+        x, y = points[i[near[0]]]
+        (x0, y0), (x1, y1) = points[segments[k[near[0]]]].tolist()
+        raise DomainError(
+            f"the point ({x:.10g}, {y:.10g}) is nearer than {least:.1g} to the segment from "
+            f"({x0:.10g}, {y0:.10g}) to ({x1:.10g}, {y1:.10g}), but not on it: snap the polygons "
+            "to a grid with shapely.set_precision, or let it be done: make_valid=True (on the "
+            "command line --make-valid)"
+        )

