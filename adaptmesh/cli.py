@@ -24,6 +24,7 @@ from .errors import AdaptmeshError, FormatError
 if TYPE_CHECKING:
     from metrics import ControlSpace
 
+    from .domain import Domain
     from .mesh import Mesh
 
 EXIT_BAD = 1
@@ -140,8 +141,8 @@ def generate(
         import adaptmesh as am
 
         _check_outputs(output, plot)
-        control = _control_space(size, metric, domain)
-        outline = am.read_domain(domain, make_valid=make_valid)
+        outline, carrier = _outline_and_mesh(domain, make_valid)
+        control = _control_space(size, metric, carrier)
         if not quiet:
             typer.echo(f"predicted: about {round(am.predict(outline, control)):,} vertices")
         with _meshing(quiet, max_vertices, placement) as options:
@@ -165,8 +166,8 @@ def adapt(
         import adaptmesh as am
 
         _check_outputs(output, plot)
-        control = _control_space(size, metric, mesh)
         old = am.read(mesh)
+        control = _control_space(size, metric, old)
         with _meshing(quiet, max_vertices, placement) as options:
             new = am.adapt(old, control, **options)
         _deliver(new, control, output, plot, quiet)
@@ -182,7 +183,7 @@ def check(mesh: MeshFile, size: Size = None, metric: Metric = None) -> None:
         validity = checked.validate()
         typer.echo(str(validity))
         if size is not None or metric is not None:
-            typer.echo(f"\n{am.measure(checked, _control_space(size, metric, mesh))}")
+            typer.echo(f"\n{am.measure(checked, _control_space(size, metric, checked))}")
         if not validity.ok:
             raise typer.Exit(EXIT_BAD)
 
@@ -212,7 +213,7 @@ def plot(
             raise typer.BadParameter("the ellipses of which metric? Give --size or --metric")
         _check_outputs(output)
         drawn = am.read(mesh)
-        control = _control_space(size, metric, mesh) if wanted else None
+        control = _control_space(size, metric, drawn) if wanted else None
         am.plot(drawn, control, show=show.value, ellipses=ellipses, path=output)
         typer.echo(f"wrote {output}")
 
@@ -282,29 +283,37 @@ def _check_outputs(*paths: Path | None) -> None:
             raise typer.BadParameter(f"there is no folder {str(path.parent)!r} for {path.name!r}")
 
 
-def _control_space(size: str | None, metric: Path | None, mesh_file: Path) -> ControlSpace:
-    """What --size or --metric asks for; exactly one of them."""
-    if (size is None) == (metric is None):
-        raise typer.BadParameter("give one of --size and --metric")
-    import metrics
-
-    if size is not None:
-        return metrics.Expression(size)
-
+def _outline_and_mesh(path: Path, make_valid: bool) -> tuple[Domain, Mesh | None]:
+    """The domain in a file, and the mesh that it is the domain of, if the file holds one."""
     import adaptmesh as am
 
     from .domain_io import OUTLINE_SUFFIXES
 
-    if mesh_file.suffix.lower() in OUTLINE_SUFFIXES:
+    if path.suffix.lower() in OUTLINE_SUFFIXES:
+        return am.read_domain(path, make_valid=make_valid), None
+    mesh = am.read(path)
+    return mesh.domain or am.Domain.of_mesh(mesh), mesh
+
+
+def _control_space(size: str | None, metric: Path | None, mesh: Mesh | None) -> ControlSpace:
+    """What --size or --metric asks for; exactly one of them, the latter on the vertices of mesh."""
+    import metrics
+
+    if (size is None) == (metric is None):
+        raise typer.BadParameter("give one of --size and --metric")
+    if size is not None:
+        return metrics.Expression(size)
+    if mesh is None:
         raise typer.BadParameter(
-            f"--metric gives values at the vertices of a mesh, and {mesh_file} is an outline: "
-            "use --size, or give the mesh"
+            "--metric gives values at the vertices of a mesh, and DOMAIN is an outline without "
+            "any: use --size, or give the mesh"
         )
-    assert metric is not None
-    mesh, values = am.read(mesh_file), am.read_sol(metric)
+    import adaptmesh as am
+
+    values = am.read_sol(metric)
     if len(values) != len(mesh.points):
         raise FormatError(
-            f"{metric} has values for {len(values)} vertices, but {mesh_file} has "
+            f"{metric} has values for {len(values)} vertices, but the mesh has "
             f"{len(mesh.points)}: they do not belong together"
         )
     return metrics.Background(mesh.points, mesh.triangles, values)

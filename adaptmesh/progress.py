@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
 from types import TracebackType
 from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
     from rich.progress import Progress as RichProgress
     from rich.progress import TaskID
-
-ProgressCallback = Callable[[str, float], None]
-"""What `generate` and `adapt` call as they go: ``progress(stage, fraction)``."""
 
 
 class TerminalProgress:
