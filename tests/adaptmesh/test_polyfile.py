@@ -1,0 +1,100 @@
+"""Triangle's .poly format."""
+
+import pytest
+
+from adaptmesh.errors import DomainError, FormatError
+from adaptmesh.polyfile import read_poly
+
+FRAME = """\
+# a square with a square hole, and a line down the middle of its left part
+8 2 0 1
+1  0 0  0
+2  3 0  0
+3  3 3  0
+4  0 3  0
+5  1 1  0   # the hole
+6  2 1  0
+7  2 2  0
+8  1 2  0
+8 1
+1  1 2  2
+2  2 3  3
+3  3 4  2
+4  4 1  0
+5  5 6  7
+6  6 7  7
+7  7 8  7
+8  8 5  7
+1
+1  1.5 1.5
+1
+1  0.5 0.5  12.5 -1
+"""
+
+
+@pytest.fixture
+def poly(tmp_path):
+    def write(text, name="in.poly"):
+        path = tmp_path / name
+        path.write_text(text)
+        return path
+
+    return write
+
+
+def test_holes_markers_and_regions(poly):
+    domain = read_poly(poly(FRAME))
+    assert domain.area == 8.0
+    assert list(domain.names) == ["2", "3", "7"]
+    assert (domain.segment_tags == domain.names["7"]).sum() == 4
+    assert (domain.segment_tags == 0).sum() == 1
+    assert list(domain.region_names) == ["12.5"]
+
+
+def test_numbers_from_zero_points_in_a_node_file_and_no_regions(poly):
+    poly("3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n", "in.node")
+    domain = read_poly(poly("0 2 0 0\n3 0\n0 0 1\n1 1 2\n2 2 0\n0\n"))
+    assert domain.area == 0.5
+    assert not domain.names
+    assert not domain.region_names
+
+
+@pytest.mark.parametrize("n_lines", [*range(2, 21), 22])
+def test_truncated_anywhere_is_an_error(poly, n_lines):
+    text = "\n".join(FRAME.splitlines()[:n_lines])
+    with pytest.raises(
+        FormatError, match=r"in\.poly ends where .* should be: is the file complete"
+    ):
+        read_poly(poly(text))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("8 2 0 1", "8 3 0 1", "line 2: .* 3 coordinates"),
+        ("8 2 0 1", "-8 2 0 1", "line 2: -8 is not a number of points"),
+        ("5  1 1  0", "6  1 1  0", "line 7: the points are not numbered"),
+        ("5  1 1  0", "5  1 one  0", "line 7: point 4 of 8 should be numbers"),
+        ("5  1 1  0   #", "5  1   #", "line 7: point 4 of 8 needs at least 3"),
+        ("5  5 6  7", "5  5 9  7", "line 16: segment 4 ends in point 9; there are points 1 to 8"),
+        ("5  5 6  7", "5  5 6", "line 16: segment 4 of 8 needs at least 4"),
+        ("1  0.5 0.5  12.5 -1", "1  0.5 0.5", "line 23: region 0 of 1 needs at least 4"),
+    ],
+)
+def test_nonsense_is_an_error_with_its_line(poly, old, new, message):
+    assert old in FRAME
+    with pytest.raises(FormatError, match=message):
+        read_poly(poly(FRAME.replace(old, new)))
+
+
+def test_a_hole_outside_is_the_domains_error(poly):
+    with pytest.raises(DomainError, match="hole 0"):
+        read_poly(poly(FRAME.replace("1  1.5 1.5", "1  9 9")))
+
+
+def test_missing_and_binary_files(tmp_path):
+    with pytest.raises(FormatError, match="no such file"):
+        read_poly(tmp_path / "absent.poly")
+    (tmp_path / "binary.poly").write_bytes(bytes(range(256)))
+    with pytest.raises(FormatError, match="not a text file"):
+        read_poly(tmp_path / "binary.poly")
