@@ -175,7 +175,11 @@ def optimise(
         mesher.smooth()
         mesher.set_metrics(0, field(mesher.points()))
         mesher.swap()
-    for _ in range(options.active_rounds):
+    for k in range(options.active_rounds):
+        if k >= 1:
+            edges = mesher.all_edges()
+            measure_edges(edges.sampler, field)
+            mesher.correct_lengths(edges)
         mesher.collapse_short_edges()
         before = mesher.vertex_count
         mesher.split_long_edges()

@@ -97,12 +97,12 @@ class Mesher {
 
     std::size_t vertex_count() const { return mesh_.vertices.size(); }
 
-    FreshEdges fresh_edges() {
+    EdgesToMeasure fresh_edges() {
         nb::gil_scoped_release release;
         return take_fresh_edges(mesh_);
     }
 
-    Index insert_along_edges(const FreshEdges& edges, double long_edge, double spacing,
+    Index insert_along_edges(const EdgesToMeasure& edges, double long_edge, double spacing,
                              Index most_vertices) {
         nb::gil_scoped_release release;
         return adaptmesh::insert_along_edges(mesh_, edges, {long_edge, spacing}, most_vertices, poll_);
@@ -136,6 +136,16 @@ class Mesher {
     Index search_active(double step, int rounds) {
         nb::gil_scoped_release release;
         return adaptmesh::search_active(mesh_, {}, step, rounds, poll_);
+    }
+
+    EdgesToMeasure all_edges() {
+        nb::gil_scoped_release release;
+        return adaptmesh::all_edges(mesh_);
+    }
+
+    void correct_lengths(const EdgesToMeasure& edges) {
+        nb::gil_scoped_release release;
+        adaptmesh::correct_lengths(mesh_, edges);
     }
 
     // Drops vanished vertices and triangles, and numbers the rest anew.
@@ -211,7 +221,7 @@ void bind_mesher(nb::module_& m) {
     m.def("edge_sampler", &sampler_of, nb::arg("starts"), nb::arg("start_tensors"), nb::arg("ends"),
           nb::arg("end_tensors"));
 
-    nb::class_<FreshEdges>(m, "FreshEdges").def_ro("sampler", &FreshEdges::sampler);
+    nb::class_<EdgesToMeasure>(m, "EdgesToMeasure").def_ro("sampler", &EdgesToMeasure::sampler);
 
     nb::class_<Mesher>(m, "Mesher", "A metric mesh and the stages that improve it, in place.")
         .def(nb::init<const Points&, const Tensors&, const Indices&, const IndexPairs&, const Points&,
@@ -228,6 +238,8 @@ void bind_mesher(nb::module_& m) {
         .def("collapse_short_edges", &Mesher::collapse_short_edges)
         .def("split_long_edges", &Mesher::split_long_edges)
         .def("search_active", &Mesher::search_active, nb::arg("step"), nb::arg("rounds"))
+        .def("all_edges", &Mesher::all_edges)
+        .def("correct_lengths", &Mesher::correct_lengths, nb::arg("edges"))
         .def("compact", &Mesher::compact)
         .def("points", &Mesher::points, nb::arg("first") = 0)
         .def("set_metrics", &Mesher::set_metrics, nb::arg("first"), nb::arg("tensors"))

@@ -20,30 +20,63 @@ struct EdgePlacement {
     double spacing = 0.75;
 };
 
-// The interior edges that appeared since the last call, for measuring, and where they are now.
-struct FreshEdges {
+// Closed-form lengths that are right to this share are left as they are.
+constexpr double WORTH_CORRECTING = 0.01;
+
+// Edges handed out for measuring.
+struct EdgesToMeasure {
     EdgeSampler sampler;
     std::vector<Index> triangle;  // one that has the edge
+    std::vector<Index> a, b;      // its ends
+
+    void add(const MetricMesh& mesh, Place edge) {
+        const Triangle& T = mesh.triangle(edge.triangle);
+        triangle.push_back(edge.triangle);
+        a.push_back(T.v[next(edge.slot)]);
+        b.push_back(T.v[prev(edge.slot)]);
+        const Vertex &from = mesh.vertices[a.back()], &to = mesh.vertices[b.back()];
+        sampler.add(from.at, from.metric, to.at, to.metric);
+    }
 };
 
-inline FreshEdges take_fresh_edges(MetricMesh& mesh) {
-    FreshEdges out;
+// The interior edges that appeared since the last call.
+inline EdgesToMeasure take_fresh_edges(MetricMesh& mesh) {
+    EdgesToMeasure out;
     auto& triangles = mesh.topology.triangles;
     for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
         if (!triangles[t].fresh) continue;
         for (int slot = 0; slot < 3; ++slot) {
             const Index across = triangles[t].n[slot];
             // An edge is new only if both its triangles are; each edge is met twice.
-            if (is_locked(across) || triangle_of(across) > t || !triangles[triangle_of(across)].fresh)
-                continue;
-            const Vertex& a = mesh.vertices[triangles[t].v[next(slot)]];
-            const Vertex& b = mesh.vertices[triangles[t].v[prev(slot)]];
-            out.sampler.add(a.at, a.metric, b.at, b.metric);
-            out.triangle.push_back(t);
+            if (is_locked(across) || triangle_of(across) > t) continue;
+            if (triangles[triangle_of(across)].fresh) out.add(mesh, {t, slot});
         }
     }
     for (Triangle& t : triangles) t.fresh = 0;
     return out;
+}
+
+// All edges between free places; the locked ones are what they are.
+inline EdgesToMeasure all_edges(const MetricMesh& mesh) {
+    EdgesToMeasure out;
+    for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
+        if (mesh.topology.is_dead(t)) continue;
+        for (int slot = 0; slot < 3; ++slot) {
+            const Index across = mesh.triangle(t).n[slot];
+            if (!is_locked(across) && triangle_of(across) < t) out.add(mesh, {t, slot});
+        }
+    }
+    return out;
+}
+
+// Lets the mesh know the measured lengths.
+inline void correct_lengths(MetricMesh& mesh, const EdgesToMeasure& edges) {
+    mesh.corrections.clear();
+    for (std::size_t i = 0; i < edges.a.size(); ++i) {
+        const double closed = MetricMesh::length(mesh.vertices[edges.a[i]], mesh.vertices[edges.b[i]]);
+        const double ratio = edges.sampler.lengths()[i] / closed;
+        if (std::abs(ratio - 1) > WORTH_CORRECTING) mesh.corrections.set(edges.a[i], edges.b[i], ratio);
+    }
 }
 
 class PointInserter {
@@ -114,7 +147,7 @@ class PointInserter {
 // Puts the field points of the measured edges into the mesh, up to `most_vertices` in all; returns
 // how many it took.
 template <typename Poll>
-Index insert_along_edges(MetricMesh& mesh, const FreshEdges& edges, const EdgePlacement& options,
+Index insert_along_edges(MetricMesh& mesh, const EdgesToMeasure& edges, const EdgePlacement& options,
                          Index most_vertices, Poll& poll) {
     const auto parts = [&](Index, double length) {
         return length < options.long_edge ? Index(1) : Index(std::max(2.0, std::floor(length + 0.5)));

@@ -1,12 +1,13 @@
 // A triangulation whose vertices carry a position and a metric, and what is measured on it.
 //
-// Lengths are closed form: Simpson's rule with the metrics of the two ends and, halfway, their
-// geometric mean (metrics::length). Quality is that of the mean metric of the three vertices.
+// Lengths are closed form: Simpson's rule with the metrics of the two ends and, half way, their
+// geometric mean (metrics::length), corrected where the true length was measured. Quality is that of the mean metric of the three vertices.
 #pragma once
 
 #include <cmath>
 #include <vector>
 
+#include "adaptmesh/core/corrections.hpp"
 #include "adaptmesh/core/point.hpp"
 #include "adaptmesh/core/predicates.hpp"
 #include "adaptmesh/core/triangulation.hpp"
@@ -35,11 +36,14 @@ class MetricMesh {
   public:
     Triangulation topology;
     std::vector<Vertex> vertices;
+    Corrections corrections;
 
     const Point& at(Index v) const { return vertices[v].at; }
     const Triangle& triangle(Index t) const { return topology.triangles[t]; }
 
-    double length(Index a, Index b) const { return length(vertices[a], vertices[b]); }
+    double length(Index a, Index b) const {
+        return corrections.of(a, b) * length(vertices[a], vertices[b]);
+    }
     static double length(const Vertex& a, const Vertex& b) {
         return metrics::length(a.metric, a.sqrt_det, b.metric, b.sqrt_det, b.at.x - a.at.x,
                                b.at.y - a.at.y);

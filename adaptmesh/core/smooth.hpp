@@ -85,7 +85,11 @@ class Smoother {
         if (mesh_.vertices[v].held_by != FREE) return false;
         if (mesh_.topology.triangle_at(v) == NONE || !mesh_.topology.ball(v, places_)) return false;
         sides_.clear();
-        for (Place p : places_) sides_.push_back(mesh_.triangle(p.triangle).v[next(p.slot)]);
+        corrections_.clear();
+        for (Place p : places_) {
+            sides_.push_back(mesh_.triangle(p.triangle).v[next(p.slot)]);
+            corrections_.push_back(mesh_.corrections.of(v, sides_.back()));
+        }
         sides_.push_back(sides_.front());
         start_ = mesh_.vertices[v].at;
         start_log_ = logs_[v];
@@ -98,7 +102,7 @@ class Smoother {
             const Vertex &a = mesh_.vertices[sides_[i]], &b = mesh_.vertices[sides_[i + 1]];
             const double q = MetricMesh::quality(p, a, b);
             if (q <= FLATTEST) return INFINITY;
-            cost += BallCost::triangle(q) + BallCost::edge(MetricMesh::length(p, a));
+            cost += BallCost::triangle(q) + BallCost::edge(corrections_[i] * MetricMesh::length(p, a));
         }
         return cost;
     }
@@ -168,6 +172,7 @@ class Smoother {
     std::vector<Tensor> logs_;
     std::vector<Place> places_;
     std::vector<Index> sides_;
+    std::vector<double> corrections_;  // of the edges from the vertex to the first of each side
     Point start_{};
     Tensor start_log_{};
 };
