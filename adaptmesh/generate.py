@@ -38,11 +38,24 @@ class EdgePlacement:
 
 
 @dataclass(frozen=True)
-class Smoothing:
-    """How often vertices are moved, and from which quality on edges are swapped for shape."""
+class Optimisation:
+    """How the filled mesh is improved.
 
-    rounds: int = 2
+    Attributes
+    ----------
+    smoothings : int
+        Passes of smoothing over all vertices.
+    active_rounds : int
+        Rounds of collapse, split, swap and search where edges are not yet unit.
+    step : float
+        First step of the search, in metric length.
+    swap_below : float
+        At last, edges beside triangles of lesser quality are swapped for shape.
+    """
+
+    smoothings: int = 2
     active_rounds: int = 4
+    step: float = 0.12
     swap_below: float = 0.5
 
 
@@ -96,7 +109,7 @@ def generate(
     mesher = triangulate_outline(domain, outline)
     report("placing points", 0.05)
     place_along_edges(mesher, field, EdgePlacement(), max_vertices, expected, report)
-    optimise(mesher, field, Smoothing(), report)
+    optimise(mesher, field, Optimisation(), report)
     report("done", 1.0)
     return finished_mesh(domain, outline, mesher)
 
@@ -151,9 +164,8 @@ def place_along_edges(
     """
     while True:
         before = mesher.vertex_count
-        fresh = mesher.fresh_edges()
-        measure_edges(fresh.sampler, field)
-        mesher.insert_along_edges(fresh, options.long_edge, options.spacing, max_vertices)
+        edges = measure_fresh_edges(mesher, field)
+        mesher.insert_along_edges(edges, options.long_edge, options.spacing, max_vertices)
         if mesher.vertex_count == before:
             return
         if mesher.vertex_count >= max_vertices:
@@ -161,32 +173,43 @@ def place_along_edges(
                 f"the mesh has reached max_vertices = {max_vertices:,} and is not yet fine enough "
                 f"(about {expected:,} vertices were predicted): ask for larger sizes, or allow more"
             )
-        mesher.set_metrics(before, field(mesher.points(before)))
+        refresh(mesher, field)
         report("placing points", 0.05 + 0.65 * min(1.0, mesher.vertex_count / max(expected, 1)))
 
 
+def refresh(mesher: _core.Mesher, field: ControlSpace) -> None:
+    """Evaluate the metric where vertices are new or have moved."""
+    mesher.set_stale_metrics(field(mesher.stale_points()))
+
+
+def measure_fresh_edges(mesher: _core.Mesher, field: ControlSpace) -> _core.EdgesToMeasure:
+    """Measure the edges that have changed, and let the mesher know where its lengths are off."""
+    edges = mesher.fresh_edges()
+    measure_edges(edges.sampler, field)
+    mesher.correct_lengths(edges)
+    return edges
+
+
 def optimise(
-    mesher: _core.Mesher, field: ControlSpace, options: Smoothing, report: Progress
+    mesher: _core.Mesher, field: ControlSpace, options: Optimisation, report: Progress
 ) -> None:
-    """Swap edges and move vertices; the metric is exact again after each round."""
+    """Smooth and swap everywhere, then work on what is not yet unit."""
+    steps = options.smoothings + options.active_rounds
     mesher.swap()
-    for k in range(options.rounds):
-        report("smoothing", 0.7 + 0.3 * k / options.rounds)
+    for k in range(options.smoothings):
+        report("smoothing", 0.7 + 0.3 * k / steps)
         mesher.smooth()
-        mesher.set_metrics(0, field(mesher.points()))
+        refresh(mesher, field)
         mesher.swap()
     for k in range(options.active_rounds):
-        if k >= 1:
-            edges = mesher.all_edges()
-            measure_edges(edges.sampler, field)
-            mesher.correct_lengths(edges)
+        report("improving", 0.7 + 0.3 * (options.smoothings + k) / steps)
+        measure_fresh_edges(mesher, field)
         mesher.collapse_short_edges()
-        before = mesher.vertex_count
         mesher.split_long_edges()
-        mesher.set_metrics(before, field(mesher.points(before)))
+        refresh(mesher, field)
         mesher.swap()
-        mesher.search_active(0.12, 2)
-        mesher.set_metrics(0, field(mesher.points()))
+        mesher.search_active(options.step, 2)
+        refresh(mesher, field)
         mesher.swap()
     mesher.swap_worst(options.swap_below)
     mesher.compact()

@@ -138,11 +138,6 @@ class Mesher {
         return adaptmesh::search_active(mesh_, {}, step, rounds, poll_);
     }
 
-    EdgesToMeasure all_edges() {
-        nb::gil_scoped_release release;
-        return adaptmesh::all_edges(mesh_);
-    }
-
     void correct_lengths(const EdgesToMeasure& edges) {
         nb::gil_scoped_release release;
         adaptmesh::correct_lengths(mesh_, edges);
@@ -155,22 +150,30 @@ class Mesher {
         for (SubEdge& e : constrained_) e.a = name[e.a], e.b = name[e.b];
     }
 
-    // Positions and metrics of the vertices from number `first` on.
-    nb::object points(std::size_t first) const {
+    nb::object points() const {
         std::vector<double> out;
-        for (std::size_t v = first; v < vertex_count(); ++v) {
-            out.push_back(mesh_.vertices[v].at.x), out.push_back(mesh_.vertices[v].at.y);
-        }
-        const std::size_t n = out.size() / 2;
-        return to_numpy(std::move(out), {n, 2});
+        for (const Vertex& v : mesh_.vertices) out.push_back(v.at.x), out.push_back(v.at.y);
+        return to_numpy(std::move(out), {vertex_count(), 2});
     }
 
-    void set_metrics(std::size_t first, const Tensors& tensors) {
-        expect_rows(tensors.shape(0), vertex_count() - first, "tensors");
-        for (std::size_t v = first; v < vertex_count(); ++v) {
-            Vertex& vertex = mesh_.vertices[v];
-            vertex = Vertex::make(vertex.at, tensor_in(tensors, v - first), vertex.held_by);
+    // Where the metric was interpolated and wants to be evaluated.
+    nb::object stale_points() {
+        auto& stale = mesh_.stale;
+        std::sort(stale.begin(), stale.end());
+        stale.erase(std::unique(stale.begin(), stale.end()), stale.end());
+        std::vector<double> out;
+        for (Index v : stale) out.push_back(mesh_.at(v).x), out.push_back(mesh_.at(v).y);
+        return to_numpy(std::move(out), {stale.size(), 2});
+    }
+
+    // The metrics at the stale points, in their order.
+    void set_stale_metrics(const Tensors& tensors) {
+        expect_rows(tensors.shape(0), mesh_.stale.size(), "tensors");
+        for (std::size_t i = 0; i < mesh_.stale.size(); ++i) {
+            Vertex& v = mesh_.vertices[mesh_.stale[i]];
+            v = Vertex::make(v.at, tensor_in(tensors, i), v.held_by);
         }
+        mesh_.stale.clear();
     }
 
     nb::object triangles() const {
@@ -238,11 +241,11 @@ void bind_mesher(nb::module_& m) {
         .def("collapse_short_edges", &Mesher::collapse_short_edges)
         .def("split_long_edges", &Mesher::split_long_edges)
         .def("search_active", &Mesher::search_active, nb::arg("step"), nb::arg("rounds"))
-        .def("all_edges", &Mesher::all_edges)
         .def("correct_lengths", &Mesher::correct_lengths, nb::arg("edges"))
         .def("compact", &Mesher::compact)
-        .def("points", &Mesher::points, nb::arg("first") = 0)
-        .def("set_metrics", &Mesher::set_metrics, nb::arg("first"), nb::arg("tensors"))
+        .def("points", &Mesher::points)
+        .def("stale_points", &Mesher::stale_points)
+        .def("set_stale_metrics", &Mesher::set_stale_metrics, nb::arg("tensors"))
         .def("triangles", &Mesher::triangles)
         .def("labels", &Mesher::labels)
         .def("constrained_edges", &Mesher::constrained_edges);

@@ -56,22 +56,8 @@ inline EdgesToMeasure take_fresh_edges(MetricMesh& mesh) {
     return out;
 }
 
-// All edges between free places; the locked ones are what they are.
-inline EdgesToMeasure all_edges(const MetricMesh& mesh) {
-    EdgesToMeasure out;
-    for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
-        if (mesh.topology.is_dead(t)) continue;
-        for (int slot = 0; slot < 3; ++slot) {
-            const Index across = mesh.triangle(t).n[slot];
-            if (!is_locked(across) && triangle_of(across) < t) out.add(mesh, {t, slot});
-        }
-    }
-    return out;
-}
-
 // Lets the mesh know the measured lengths.
 inline void correct_lengths(MetricMesh& mesh, const EdgesToMeasure& edges) {
-    mesh.corrections.clear();
     for (std::size_t i = 0; i < edges.a.size(); ++i) {
         const double closed = MetricMesh::length(mesh.vertices[edges.a[i]], mesh.vertices[edges.b[i]]);
         const double ratio = edges.sampler.lengths()[i] / closed;
@@ -99,8 +85,7 @@ class PointInserter {
         const Vertex p = Vertex::make(at, metric);
         if (!keeps_distance(p, place.triangle)) return Outcome::too_near;
 
-        const Index v = mesh_.topology.add_vertex();
-        mesh_.vertices.push_back(p);
+        const Index v = mesh_.add_vertex(p);
         around_.clear();
         around_.push_back(place.triangle);
         if (on_edge) {

@@ -37,6 +37,22 @@ class MetricMesh {
     Triangulation topology;
     std::vector<Vertex> vertices;
     Corrections corrections;
+    std::vector<Index> stale;  // vertices whose metric is interpolated and wants to be evaluated
+
+    // The new vertex is free, and stale.
+    Index add_vertex(const Vertex& vertex) {
+        const Index v = topology.add_vertex();
+        vertices.push_back(vertex);
+        stale.push_back(v);
+        return v;
+    }
+
+    // Puts a vertex elsewhere in its ball, with the metric interpolated there.
+    void move_vertex(Index v, const Vertex& moved, const std::vector<Place>& ball) {
+        vertices[v] = moved;
+        stale.push_back(v);
+        for (Place p : ball) topology.triangles[p.triangle].fresh = 1;
+    }
 
     const Point& at(Index v) const { return vertices[v].at; }
     const Triangle& triangle(Index t) const { return topology.triangles[t]; }

@@ -132,7 +132,7 @@ class Smoother {
         if (!log_metric(to, log)) return false;
         const Vertex moved = Vertex::make(to, metrics::exp_tensor(log));
         if (!(cost_at(moved) < WORTHWHILE * cost) || !is_positive_from(to)) return false;
-        mesh_.vertices[v] = moved;
+        mesh_.move_vertex(v, moved, places_);
         logs_[v] = log;
         return true;
     }

@@ -40,8 +40,7 @@ class Splitter {
             return false;
 
         const Index u = triangle_of(mesh_.triangle(edge.triangle).n[edge.slot]);
-        const Index v = mesh_.topology.add_vertex();
-        mesh_.vertices.push_back(p);
+        const Index v = mesh_.add_vertex(p);
         const auto added = mesh_.topology.split_edge(edge, v);
         around_.assign({edge.triangle, u, added[0], added[1]});
         legalise_around(mesh_, v, around_, DelaunayCriterion{});
