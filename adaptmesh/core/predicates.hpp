@@ -39,8 +39,8 @@ constexpr double U = 0x1p-53;
 // (p + TINY) exceed k u p + 2^-1074. Not smaller, for k u TINY is not to be subnormal: slow.
 constexpr double TINY = 0x1p-900;
 
-ADAPTMESH_NOINLINE inline int orient2d_unfiltered(Point a, Point b, Point c, double det);
-ADAPTMESH_NOINLINE inline int incircle_unfiltered(Point a, Point b, Point c, Point d, double det);
+int orient2d_unfiltered(Point a, Point b, Point c, double det);
+int incircle_unfiltered(Point a, Point b, Point c, Point d, double det);
 
 }  // namespace detail
 
