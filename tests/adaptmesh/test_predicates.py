@@ -70,11 +70,18 @@ def squares_of_40_bits(rng, n):
     return squares(rng, n, 40)
 
 
-def lines_of_about_26_bits(rng, n):
-    """Where the few-bits stage of orient2d ends; on one line but for one unit, or exactly."""
-    start, step = rng.integers(-(2**25), 2**25, (2, 2, n))
-    points = start + np.array([-1, 0, 1, 2]).reshape(4, 1, 1) * (step >> rng.integers(0, 3, n))
-    return (points + rng.integers(0, 2, (4, 2, n)) * rng.integers(0, 2, n)).astype(float)
+def small_areas_of_about_26_bits(rng, n):
+    """Where the few-bits stage of orient2d ends: the determinant of (k+i, k), (k, k-i) is -i^2."""
+    k, cx, cy, dx, dy = rng.integers(0, 2 ** rng.integers(24, 29, n), (5, n))
+    i = rng.integers(-2, 3, n)
+    points = np.array([[cx + k + i, cy + k], [cx + k, cy + k - i], [cx, cy], [dx, dy]])
+    return points.astype(float)
+
+
+def multiples_of_a_point(rng, n):
+    """Collinear, half of them exactly, with differences longer than a double."""
+    points = np.ldexp(rng.random((2, n)), rng.integers(-40, 41, (4, 1, n)))
+    return np.where(rng.integers(0, 2, n), points, nudged(rng, points))
 
 
 def rectangles(rng, n):
@@ -125,7 +132,8 @@ FAMILIES = [
     cocircular_of_all_sizes,
     squares_of_about_12_bits,
     squares_of_40_bits,
-    lines_of_about_26_bits,
+    small_areas_of_about_26_bits,
+    multiples_of_a_point,
     rectangles,
     duplicates,
     zeros,
