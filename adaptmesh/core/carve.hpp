@@ -95,7 +95,7 @@ class Carver {
 
     // A locked edge with the same removed component on both sides does not bound the domain: it is
     // part of a boundary that is open somewhere. The vertex named is a loose end if there is one.
-    void check_closed() const {
+    void check_closed(const char* fault) const {
         std::vector<Index> degree(mesh_.vertex_count(), 0);
         for (const SubEdge& e : sub_edges_) ++degree[e.a], ++degree[e.b];
         const SubEdge* leak = nullptr;
@@ -103,11 +103,11 @@ class Carver {
             if (sides_[k].first != sides_[k].second || !is_removed_[sides_[k].first]) continue;
             const SubEdge& e = sub_edges_[k];
             for (Index v : {e.a, e.b}) {
-                if (degree[v] == 1) throw Fault("open_boundary", v, e.segment, points_[v]);
+                if (degree[v] == 1) throw Fault(fault, v, e.segment, points_[v]);
             }
             if (leak == nullptr) leak = &e;
         }
-        if (leak != nullptr) throw Fault("open_boundary", leak->a, leak->segment, points_[leak->a]);
+        if (leak != nullptr) throw Fault(fault, leak->a, leak->segment, points_[leak->a]);
     }
 
     void check_not_empty() const {
@@ -221,10 +221,10 @@ void carve(Triangulation& mesh, const std::vector<Point>& points, std::vector<Su
            const CarveOptions& options, Poll& poll) {
     detail::Carver work(mesh, points, sub_edges);
     work.find_components(poll);
-    work.check_closed();
+    work.check_closed("open_boundary");
     work.remove_holes(options.holes);
     if (options.nesting) work.remove_nested();
-    work.check_closed();
+    work.check_closed("open_hole");
     work.number_regions(options.region_seeds);
     work.check_not_empty();
     work.check_points();

@@ -129,10 +129,14 @@ class Constrainer {
 
     void lock(Place edge, Index from, Index to, Index segment) {
         if (is_locked(mesh_.triangles[edge.triangle].n[edge.slot])) {
-            throw Fault("overlapping_segments", segment_at(from, to), segment, points_[from]);
+            throw pair_fault("overlapping_segments", segment, segment_at(from, to), points_[from]);
         }
         mesh_.lock(edge);
         sub_edges.push_back({from, to, segment});
+    }
+
+    static Fault pair_fault(const char* kind, Index segment, Index other, Point at) {
+        return Fault(kind, std::min(segment, other), std::max(segment, other), at);
     }
 
     // Only asked on the way to a fault.
@@ -246,9 +250,8 @@ class Constrainer {
         const Point r = points_[c], s = points_[d];
         const double ux = q.x - p.x, uy = q.y - p.y, wx = s.x - r.x, wy = s.y - r.y;
         const double t = ((r.x - p.x) * wy - (r.y - p.y) * wx) / (ux * wy - uy * wx);
-        const Index other = segment_at(c, d);
         const Point meet{p.x + t * ux, p.y + t * uy};
-        return Fault("crossing_segments", std::min(segment, other), std::max(segment, other), meet);
+        return pair_fault("crossing_segments", segment, segment_at(c, d), meet);
     }
 };
 

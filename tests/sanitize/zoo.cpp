@@ -1,0 +1,244 @@
+// The core over degenerate inputs, to be run under sanitizers. From the root of the project:
+//
+//   g++ -std=c++17 -O1 -g -Wall -Wextra -ffp-contract=off -D_GLIBCXX_ASSERTIONS
+//       -fsanitize=address,undefined -fno-sanitize-recover=all -I. tests/sanitize/zoo.cpp -o zoo
+//   ./zoo
+//
+// Prints what it ran; a failed check or a sanitizer ends it with an error. To add a part of the
+// core: write a function that runs it on one Input and checks the outcome, and add it to PARTS.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "adaptmesh/core/triangulate.hpp"
+
+using namespace adaptmesh;
+
+namespace {
+
+struct Input {
+    std::string name;
+    std::vector<Point> points;
+    std::vector<Segment> segments;
+    CarveOptions options;
+};
+
+// ---- What must hold ----
+
+void require(bool holds, const Input& input, const char* what) {
+    if (holds) return;
+    std::printf("FAILED on %s: %s\n", input.name.c_str(), what);
+    std::exit(1);
+}
+
+// Neighbours agree about their edge and its lock, triangles are counter-clockwise.
+void check_mesh(const Triangulation& mesh, const Input& input) {
+    for (Index t = 0; t < mesh.triangle_count(); ++t) {
+        const Triangle& T = mesh.triangles[t];
+        for (int i = 0; i < 3; ++i) {
+            const Index code = T.n[i];
+            if (code == NONE) continue;
+            const Triangle& U = mesh.triangles[triangle_of(code)];
+            const int j = slot_of(code);
+            require(U.n[j] == (edge_code(t, i) | (code & LOCK_BIT)), input, "links are mutual");
+            require(U.v[next(j)] == T.v[prev(i)] && U.v[prev(j)] == T.v[next(i)], input,
+                    "neighbours share the edge");
+        }
+        if ((T.v[0] | T.v[1] | T.v[2]) < 0) continue;
+        require(orient2d(input.points[T.v[0]], input.points[T.v[1]], input.points[T.v[2]]) > 0,
+                input, "triangles are counter-clockwise");
+    }
+    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+        const Index t = mesh.triangle_at(v);
+        if (t == NONE) continue;
+        const Triangle& T = mesh.triangles[t];
+        require(T.v[T.slot_of_vertex(v)] == v, input, "triangle_at has the vertex");
+    }
+}
+
+// ---- The parts of the core ----
+
+void run_delaunay(const Input& input) {
+    NoPoll poll;
+    std::vector<Index> duplicate_of;
+    const Triangulation mesh = delaunay(input.points, duplicate_of, poll);
+    check_mesh(mesh, input);
+    // Every point is found where it is, from anywhere.
+    const auto at = [&input](Index v) { return input.points[v]; };
+    for (std::size_t i = 0; i < input.points.size(); ++i) {
+        const Index start = Index(i) % mesh.triangle_count();
+        const Location found = locate(mesh, at, input.points[i], start);
+        require(found.where == Where::on_vertex, input, "a point is at a vertex");
+        require(mesh.triangles[found.triangle].v[found.slot] == duplicate_of[i], input,
+                "a point is at its own vertex");
+    }
+}
+
+void run_triangulate(const Input& input) {
+    NoPoll poll;
+    const ConstrainedTriangulation out =
+        triangulate(input.points, input.segments, input.options, poll);
+    check_mesh(out.triangulation, input);
+    std::size_t locked = 0, border = 0;
+    for (const Triangle& t : out.triangulation.triangles) {
+        for (Index code : t.n) (code == NONE ? border : locked) += is_locked(code);
+    }
+    std::size_t boundary = 0;
+    for (const SubEdge& e : out.sub_edges) boundary += e.is_boundary;
+    require(border == boundary, input, "the border is the boundary edges");
+    require(locked == 2 * (out.sub_edges.size() - boundary), input,
+            "the other sub-edges are locked");
+}
+
+constexpr void (*PARTS[])(const Input&) = {run_delaunay, run_triangulate};
+
+// ---- The inputs ----
+
+using Shape = std::vector<Point>;
+
+Shape grid(int nx, int ny, double step) {
+    Shape out;
+    for (int y = 0; y < ny; ++y) {
+        for (int x = 0; x < nx; ++x) out.push_back({x * step, y * step});
+    }
+    return out;
+}
+
+Shape circle(int n, double radius) {
+    Shape out;
+    for (int k = 0; k < n; ++k) {
+        const double angle = 2 * 3.141592653589793 * k / n;
+        out.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+    }
+    return out;
+}
+
+Shape random_lattice(int n, int side, unsigned seed) {
+    std::mt19937 random(seed);
+    Shape out;
+    for (int k = 0; k < n; ++k) {
+        const double x = random() % side, y = random() % side;
+        out.push_back({x, y});
+    }
+    return out;
+}
+
+Shape clusters(int n, double spread) {
+    Shape out = random_lattice(n, 4, 1);
+    std::mt19937 random(2);
+    for (Point& p : out) p.x += spread * (random() % 1000), p.y += spread * (random() % 1000);
+    return out;
+}
+
+Shape line(int n, Point step, Point extra) {
+    Shape out = {extra};
+    for (int k = 0; k < n; ++k) out.push_back({k * step.x, k * step.y});
+    return out;
+}
+
+Shape parabola(int n) {
+    Shape out;
+    for (int k = -n; k <= n; ++k) out.push_back({double(k), double(k) * k});
+    return out;
+}
+
+// A closed polygon through the last `count` points of the input.
+void close_ring(Input& input, Index count) {
+    const Index first = Index(input.points.size()) - count;
+    for (Index k = 0; k < count; ++k) {
+        input.segments.push_back({first + k, first + (k + 1) % count});
+    }
+}
+
+void add_ring(Input& input, const Shape& corners) {
+    input.points.insert(input.points.end(), corners.begin(), corners.end());
+    close_ring(input, Index(corners.size()));
+}
+
+// Segments of random lattice points, in a frame: crossing, overlapping, touching, or none of it.
+Input random_segments(unsigned seed) {
+    std::mt19937 random(seed);
+    Input input{"random segments " + std::to_string(seed), {}, {}, {}};
+    for (Point p : random_lattice(30, 9, seed)) {
+        const auto same = [p](Point q) { return p.x == q.x && p.y == q.y; };
+        if (std::none_of(input.points.begin(), input.points.end(), same)) input.points.push_back(p);
+    }
+    const Index n = Index(input.points.size());
+    for (unsigned k = 0; k < seed % 8; ++k) {
+        input.segments.push_back({Index(random() % n), Index(random() % n)});
+    }
+    add_ring(input, {{-1, -1}, {10, -1}, {10, 10}, {-1, 10}});
+    input.options.nesting = seed % 2 == 0;
+    return input;
+}
+
+std::vector<Input> zoo() {
+    std::vector<Input> out = {
+        {"nothing", {}, {}, {}},
+        {"one point", {{1, 1}}, {}, {}},
+        {"one place", Shape(9, {1, 1}), {}, {}},
+        {"line", line(40, {1, 1}, {50, 50}), {}, {}},
+        {"line and a point", line(60, {1, 0}, {20.3, 4}), {}, {}},
+        {"slope and a point", line(60, {0.1, 0.3}, {2, 6.1}), {}, {}},
+        {"grid", grid(20, 15, 1), {}, {}},
+        {"grid of 0.1", grid(20, 15, 0.1), {}, {}},
+        {"circle", circle(200, 1), {}, {}},
+        {"lattice with duplicates", random_lattice(400, 12, 3), {}, {}},
+        {"clusters", clusters(300, 1e-15), {}, {}},
+        {"parabola", parabola(80), {}, {}},
+        {"infinite", {{0, 0}, {1, 0}, {0, INFINITY}}, {}, {}},
+        {"huge and tiny", {{1e308, -1e308}, {-1e308, 1e308}, {5e-324, 0}, {0, 1e-300}}, {}, {}},
+    };
+    for (Input& input : std::vector<Input>(out)) {
+        if (input.points.size() < 3) continue;
+        input.name += ", in a ring";
+        add_ring(input, circle(30, 1000));
+        out.push_back(input);
+    }
+    Input rings{"nested rings", {}, {}, {{}, {}, true}};
+    for (int k = 1; k <= 6; ++k) add_ring(rings, circle(5 * k, k));
+    out.push_back(rings);
+    rings.name += " with holes and regions";
+    rings.options = {{{0, 0}, {0, 2.5}}, {{0, 1.5}, {0, 5.5}}, false};
+    out.push_back(rings);
+    Input comb{"comb", {{-1, 0}, {101, 0}}, {{0, 1}}, {}};
+    for (int k = 0; k < 100; ++k) comb.points.push_back({double(k), k % 2 == 0 ? 0.01 : -0.01});
+    add_ring(comb, circle(12, 300));
+    out.push_back(comb);
+    for (unsigned seed = 0; seed < 300; ++seed) out.push_back(random_segments(seed));
+    return out;
+}
+
+Input moved(Input input, double scale, double offset) {
+    const auto move = [=](Point& p) { p = {p.x * scale + offset, p.y * scale + offset}; };
+    for (Point& p : input.points) move(p);
+    for (Point& p : input.options.holes) move(p);
+    for (Point& p : input.options.region_seeds) move(p);
+    return input;
+}
+
+}  // namespace
+
+int main() {
+    int meshes = 0, faults = 0;
+    for (const Input& original : zoo()) {
+        for (double scale : {1e-9, 1.0, 1e9}) {
+            for (double offset : {0.0, 1e6}) {
+                const Input input = moved(original, scale, offset);
+                for (auto part : PARTS) {
+                    try {
+                        part(input);
+                        ++meshes;
+                    } catch (const Fault&) {
+                        ++faults;
+                    }
+                }
+            }
+        }
+    }
+    std::printf("%d meshes, %d inputs refused\n", meshes, faults);
+}
