@@ -11,8 +11,12 @@ What Gmsh cannot say goes into a section of our own, which Gmsh skips::
     {"edges": {"say \\"hi\\"": 3}, "regions": {}, "plane_fields": ["u"]}
     $EndAdaptmesh
 
-`edges` and `regions` are there only if `$PhysicalNames` cannot hold those names (with a quote or a
-line break, longer than 127 bytes, two for one tag, or for tag 0), and then stand in its place.
+`edges` and `regions` are there only if `$PhysicalNames` cannot hold the names as they are (with a
+quote, a $ or a line break, longer than 127 bytes, two for one tag, or for tag 0), and then stand in
+its place; Gmsh shows them with ' for a quote and blanks.
+
+When Gmsh saves a mesh again, it leaves out what is in no group as soon as there is any group; give
+every region a tag, or set its option `Mesh.SaveAll`.
 
 meshio (5.3.5) is not used here: for 4.1 it writes only physical groups of entities that own a
 node, and groups the nodes by entity without putting them back into order when it reads; it reads
@@ -319,16 +323,17 @@ def encode(content: Content, *, version: str = "4.1", binary: bool = True) -> by
             )
     parts = [section("MeshFormat", f"{version} {int(binary)} 8\n".encode() + _one(binary))]
     parts += _names_sections(content)
-    parts += writers[version](content, binary)
+    sections, nodes, triangles = writers[version](content, binary)
+    parts += sections
     for name, values in content.point_fields.items():
-        parts.append(section("NodeData", _view(name, values, binary), binary))
+        parts.append(section("NodeData", _view(name, values, nodes, binary), binary))
     if content.metric is not None:
         m11, m12, m22 = content.metric.T
         zero = np.zeros(len(m11))
         tensor = np.stack([m11, m12, zero, m12, m22, zero, zero, zero, zero], axis=1)
-        parts.append(section("NodeData", _view("metric", tensor, binary), binary))
+        parts.append(section("NodeData", _view("metric", tensor, nodes, binary), binary))
     for name, values in content.triangle_fields.items():
-        parts.append(section("ElementData", _view(name, values, binary), binary))
+        parts.append(section("ElementData", _view(name, values, triangles, binary), binary))
     return b"".join(parts)
 
 
@@ -343,16 +348,12 @@ def _one(binary: bool) -> bytes:
 
 
 def _names_sections(content: Content) -> list[bytes]:
-    named = {1: content.names, 2: content.region_names}
-    lines = [
-        f'{dim} {tag} "{name}"\n'
-        for dim, names in named.items()
-        for name, tag in names.items()
-        if _plain(name, tag, names)
-    ]
+    lines: list[str] = []
     ours: dict[str, object] = {}
-    for key, names in (("edges", content.names), ("regions", content.region_names)):
-        if not all(_plain(name, tag, names) for name, tag in names.items()):
+    for dim, key, names in ((1, "edges", content.names), (2, "regions", content.region_names)):
+        shown = {tag: _shown(name) for name, tag in reversed(names.items()) if tag > 0}
+        lines += [f'{dim} {tag} "{name}"\n' for tag, name in sorted(shown.items())]
+        if {name: tag for tag, name in shown.items()} != names:
             ours[key] = dict(names)
     fields = {**content.point_fields, **content.triangle_fields}
     plane = [name for name, values in fields.items() if values.ndim == 2 and values.shape[1] == 2]
@@ -366,26 +367,23 @@ def _names_sections(content: Content) -> list[bytes]:
     return parts
 
 
+def _shown(name: str) -> str:
+    """The name as far as `$PhysicalNames` can hold it."""
+    plain = "".join(c if c.isprintable() else " " for c in name.replace('"', "'"))
+    return plain.replace("$", " ").encode()[:_LONGEST_NAME].decode(errors="ignore").strip()
+
+
 def _json(ours: Mapping[str, object]) -> bytes:
     return (json.dumps(ours).replace("$", "\\u0024") + "\n").encode()
 
 
-def _plain(name: str, tag: int, names: Mapping[str, int]) -> bool:
-    """Whether `$PhysicalNames` can hold the name of that tag."""
-    return (
-        tag > 0
-        and '"' not in name
-        and name.isprintable()
-        and name == name.strip()
-        and "$" not in name
-        and 0 < len(name.encode()) <= _LONGEST_NAME
-        and list(names.values()).count(tag) == 1
-    )
+def _view(name: str, values: Array, order: Array, binary: bool) -> bytes:
+    """A view, row by row in the order in which the file has the nodes or elements.
 
-
-def _view(name: str, values: Array, binary: bool) -> bytes:
-    rows = values.reshape(len(values), -1)
+    Each row bears its tag, so any order would do for Gmsh; but meshio does not look at the tags.
+    """
+    rows = values.reshape(len(values), -1)[order]
     if rows.shape[1] == 2:
         rows = np.column_stack([rows, np.zeros(len(rows))])
     header = f'1\n"{name}"\n1\n0\n3\n0\n{rows.shape[1]}\n{len(rows)}\n'.encode()
-    return header + table(binary, ("i4", np.arange(1, len(rows) + 1)), ("f8", rows))
+    return header + table(binary, ("i4", order + 1), ("f8", rows))

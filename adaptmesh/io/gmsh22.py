@@ -100,8 +100,11 @@ READERS: dict[str, Callable[[Cursor, Sections], None]] = {
 # ---------------------------------------------------------------------------------------- writing
 
 
-def body(content: Content, binary: bool) -> list[bytes]:
-    """The sections `$Nodes` and `$Elements`; the entity of an element is its tag plus one."""
+def body(content: Content, binary: bool) -> tuple[list[bytes], Array, Array]:
+    """The sections `$Nodes` and `$Elements`, and the orders of nodes and triangles in them.
+
+    The entity of an element is its tag plus one.
+    """
     n, m, k = len(content.points), len(content.triangles), len(content.edges)
     points = np.column_stack([content.points, np.zeros(n)])
     nodes = b"%d\n" % n + table(binary, ("i4", np.arange(1, n + 1)), ("f8", points))
@@ -119,4 +122,5 @@ def body(content: Content, binary: bool) -> list[bytes]:
             types = np.broadcast_to([kind, 2], (len(cells), 2))
             columns = (tags, types, groups, cells + 1)
             elements += table(binary, *(("i4", column) for column in columns))
-    return [section("Nodes", nodes, binary), section("Elements", elements, binary)]
+    sections = [section("Nodes", nodes, binary), section("Elements", elements, binary)]
+    return sections, np.arange(n), np.arange(m)

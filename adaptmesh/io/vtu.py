@@ -9,12 +9,13 @@ One grid holds the triangles (VTK type 5) and after them the constrained edges (
     CellData    regions       region of each triangle, 0 on edges
                 edge_tags     tag of each edge, 0 on triangles
                 q, ...        fields of the triangles, NaN (or 0 for integers) on edges
-    FieldData   edge_names, edge_name_tags, region_names, region_name_tags
-                              strings and integers, row by row
-                plane_fields  names of the fields that had 2 columns
+    FieldData   edge_tags: inlet    tag of the edges that bear a name
+                regions: steel      number of a named region
+                columns: u          2 for a field that had 2 columns
 
-meshio (5.3.5) is not used here: it neither writes nor reads strings in FieldData, and it reads
-only the cells of the last piece of a file that has several.
+Names are in the names of arrays because meshio, through which many read `.vtu`, stops at arrays of
+strings. meshio (5.3.5) is not used here: it writes no FieldData, and of a file with several pieces
+it reads only the cells of the last.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from __future__ import annotations
 import base64
 import re
 import zlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
@@ -42,6 +43,7 @@ _KINDS = {
     21: "quadratic edges", 22: "quadratic triangles", 23: "quadratic quadrilaterals",
     42: "polyhedra",
 }  # fmt: skip
+_EDGE, _REGION, _COLUMNS = "edge_tags: ", "regions: ", "columns: "
 _TYPE_NAMES = {dtype: name for name, dtype in TYPES.items()}
 
 
@@ -105,19 +107,18 @@ def _padded(values: Array, count: int) -> Array:
     return np.concatenate([values, np.full((count, *values.shape[1:]), nothing, values.dtype)])
 
 
-def _field_data(content: Content) -> Iterable[str]:
-    for kind, names in (("edge", content.names), ("region", content.region_names)):
-        if names:
-            yield _string_array(f"{kind}_names", list(names))
-            tags = np.array(list(names.values()), np.int32)
-            yield _data_array(f"{kind}_name_tags", tags, f'NumberOfTuples="{len(tags)}" ')
-    plane = [
-        name
-        for name, values in {**content.point_fields, **content.triangle_fields}.items()
-        if values.ndim == 2 and values.shape[1] == 2
+def _field_data(content: Content) -> list[str]:
+    fields = {**content.point_fields, **content.triangle_fields}
+    plane = [name for name, values in fields.items() if values.ndim == 2 and values.shape[1] == 2]
+    numbers = {
+        **{f"{_EDGE}{name}": tag for name, tag in content.names.items()},
+        **{f"{_REGION}{name}": tag for name, tag in content.region_names.items()},
+        **{f"{_COLUMNS}{name}": 2 for name in plane},
+    }
+    return [
+        _data_array(name, np.array([number], np.int32), 'NumberOfTuples="1" ')
+        for name, number in numbers.items()
     ]
-    if plane:
-        yield _string_array("plane_fields", plane)
 
 
 def _section(tag: str, arrays: Mapping[str, Array]) -> list[str]:
@@ -140,15 +141,6 @@ def _compressed(values: Array, block: int = 1 << 20) -> str:
     return (base64.b64encode(header) + base64.b64encode(b"".join(parts))).decode()
 
 
-def _string_array(name: str, strings: list[str]) -> str:
-    """Strings as VTK wants them: the UTF-8 codes in decimal, each string closed by a 0."""
-    codes = " ".join(str(c) for s in strings for c in (*s.encode(), 0))
-    return (
-        f'<Array type="String" Name={quoteattr(name)} NumberOfTuples="{len(strings)}" '
-        f'format="ascii">{codes}</Array>'
-    )
-
-
 # ---------------------------------------------------------------------------------------- reading
 
 
@@ -162,7 +154,7 @@ def decode(data: bytes) -> Content:
     if not pieces:
         raise FormatError("has no <Piece>: there is nothing to read")
     content = _joined(pieces)
-    _take_names(content, {a.get("Name", ""): arrays.read(a) for a in grid.iterfind("FieldData/*")})
+    _take_names(content, grid, arrays)
     return content
 
 
@@ -305,15 +297,22 @@ def _joined_fields(pieces: list[dict[str, Array]]) -> dict[str, Array]:
     return out
 
 
-def _take_names(content: Content, field_data: Mapping[str, Array]) -> None:
-    for kind, names in (("edge", content.names), ("region", content.region_names)):
-        keys, tags = field_data.get(f"{kind}_names"), field_data.get(f"{kind}_name_tags")
-        if keys is None or tags is None or keys.dtype.kind != "U" or tags.dtype.kind not in "iu":
+def _take_names(content: Content, grid: Element, arrays: VtuArrays) -> None:
+    two_columns = []
+    for element in grid.iterfind("FieldData/DataArray"):
+        name = element.get("Name", "")
+        prefix = next((p for p in (_EDGE, _REGION, _COLUMNS) if name.startswith(p)), None)
+        if prefix is None:
             continue
-        if len(keys) != len(tags.ravel()):
-            raise FormatError(f"FieldData: {len(keys)} {kind}_names but {tags.size} tags")
-        names.update(zip(keys.tolist(), tags.ravel().tolist(), strict=True))
+        number, name = arrays.read(element), name.removeprefix(prefix)
+        if number.shape != (1,) or number.dtype.kind not in "iu":
+            raise FormatError(f"FieldData {prefix}{name!r} is not one integer")
+        if prefix == _COLUMNS:
+            two_columns.append(name)
+        else:
+            names = content.names if prefix == _EDGE else content.region_names
+            names[name] = int(number[0])
     for fields in (content.point_fields, content.triangle_fields):
-        for name in field_data.get("plane_fields", np.empty(0)).ravel().tolist():
+        for name in two_columns:
             if name in fields and fields[name].ndim == 2:
                 fields[name] = fields[name][:, :2]

@@ -22,6 +22,7 @@ import numpy as np
 
 from ..errors import FormatError
 from .content import Array
+from .located import located
 from .records import TextCursor
 
 if TYPE_CHECKING:
@@ -51,11 +52,9 @@ class VtuArrays:
         self._appended_is_raw = encoding == "raw"
 
     def read(self, element: Element) -> Array:
-        """Array of one <DataArray> (n,) or (n, c), or strings (n,) of one <Array>."""
-        name, kind = element.get("Name", "?"), element.get("type", "?")
-        try:
-            if kind == "String":
-                return self._strings(element)
+        """Array of one <DataArray> (n,) or (n, c)."""
+        with located(f"array {element.get('Name', '?')!r}"):
+            kind = element.get("type", "?")
             if kind not in TYPES:
                 raise FormatError(f"type {kind!r} is unknown")
             values = self._numbers(element, TYPES[kind])
@@ -63,15 +62,6 @@ class VtuArrays:
             if not columns.isdecimal() or not int(columns) or values.size % int(columns):
                 raise FormatError(f"{values.size} numbers are not rows of {columns}")
             return values if int(columns) == 1 else values.reshape(-1, int(columns))
-        except FormatError as error:
-            raise FormatError(f"array {name!r}: {error}") from None
-
-    def _strings(self, element: Element) -> Array:
-        data = self._numbers(element, TYPES["UInt8"]).tobytes()
-        try:
-            return np.array(data.decode().split("\0")[:-1], dtype=np.str_)
-        except UnicodeDecodeError:
-            raise FormatError("is not UTF-8 text") from None
 
     def _numbers(self, element: Element, dtype: np.dtype[np.generic]) -> Array:
         text = (element.text or "").encode()
