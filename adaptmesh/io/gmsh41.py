@@ -22,7 +22,6 @@ from .content import Array, Content
 from .gmsh import NODES_OF_TYPE, Elements, Sections, refuse_element_types, section
 from .records import Cursor, one, table
 
-
 # ---------------------------------------------------------------------------------------- reading
 
 

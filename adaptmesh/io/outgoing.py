@@ -121,10 +121,9 @@ def _field(name: str, values: ArrayLike) -> Array:
     """A field as float64 or as integers of at most 64 bits, (n,), (n, 2) or (n, 3)."""
     if name in _RESERVED:
         raise FormatError(f"{name!r} is the name of what the file holds anyway; rename the field")
-    if not name or not name.isprintable() or set(name) & set('"$/\\:') or name != name.strip():
+    if not name or not name.isprintable() or set(name) & set('"$&<>') or name != name.strip():
         raise FormatError(
-            f"{name!r} cannot be the name of a field; leave out quotes, $, slashes, colons and "
-            "blanks at its ends"
+            f'{name!r} cannot be the name of a field; leave out " $ & < > and blanks at its ends'
         )
     try:
         array = np.asarray(values)

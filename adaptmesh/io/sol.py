@@ -131,6 +131,10 @@ def encode_companions(content: Content, mesh_path: Path) -> dict[Path, bytes]:
     out = {}
     for place, fields in zip(_PLACES, (content.point_fields, content.triangle_fields), strict=True):
         for name, values in fields.items():
+            if set(name) & set("/\\:*?|"):
+                raise FormatError(
+                    f"field {name!r} would be a file of its own; leave out / \\ : * ? | in its name"
+                )
             data = encode(values, tensor=False, place=place, binary=binary)
             out[companion(mesh_path, name)] = data
     if content.metric is not None:

@@ -13,7 +13,8 @@ One grid holds the triangles (VTK type 5) and after them the constrained edges (
                 regions: steel      number of a named region
                 columns: u          2 for a field that had 2 columns
 
-Names are in the names of arrays because meshio, through which many read `.vtu`, stops at arrays of
+In those names ``% " & < >`` and control characters are written as %25, %22, ... (VTK does not escape
+them when it saves a file again). Names are in the names of arrays because meshio, through which many read `.vtu`, stops at arrays of
 strings. meshio (5.3.5) is not used here: it writes no FieldData, and of a file with several pieces
 it reads only the cells of the last.
 """
@@ -111,14 +112,22 @@ def _field_data(content: Content) -> list[str]:
     fields = {**content.point_fields, **content.triangle_fields}
     plane = [name for name, values in fields.items() if values.ndim == 2 and values.shape[1] == 2]
     numbers = {
-        **{f"{_EDGE}{name}": tag for name, tag in content.names.items()},
-        **{f"{_REGION}{name}": tag for name, tag in content.region_names.items()},
+        **{f"{_EDGE}{_escaped(name)}": tag for name, tag in content.names.items()},
+        **{f"{_REGION}{_escaped(name)}": tag for name, tag in content.region_names.items()},
         **{f"{_COLUMNS}{name}": 2 for name in plane},
     }
     return [
         _data_array(name, np.array([number], np.int32), 'NumberOfTuples="1" ')
         for name, number in numbers.items()
     ]
+
+
+def _escaped(name: str) -> str:
+    return re.sub(r"[%\"&<>\x00-\x1f\x7f]", lambda match: f"%{ord(match[0]):02X}", name)
+
+
+def _unescaped(name: str) -> str:
+    return re.sub(r"%([0-9A-F]{2})", lambda match: chr(int(match[1], 16)), name)
 
 
 def _section(tag: str, arrays: Mapping[str, Array]) -> list[str]:
@@ -311,7 +320,7 @@ def _take_names(content: Content, grid: Element, arrays: VtuArrays) -> None:
             two_columns.append(name)
         else:
             names = content.names if prefix == _EDGE else content.region_names
-            names[name] = int(number[0])
+            names[_unescaped(name)] = int(number[0])
     for fields in (content.point_fields, content.triangle_fields):
         for name in two_columns:
             if name in fields and fields[name].ndim == 2:
