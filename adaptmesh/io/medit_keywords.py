@@ -113,6 +113,8 @@ class BinaryFile:
         if not self.cursor.at <= self._next < len(self.cursor.data):
             raise FormatError("has no End where the next keyword should be: it is cut short")
         self.cursor.at = self._next
+        if self.cursor.data[self._next :] == b"\n6\0\0\0":  # Mmg's End (54) of a solution
+            return "End"
         number = one(self.cursor)
         keyword = _NAMES.get(number, str(number))
         if keyword != "End":

@@ -13,10 +13,10 @@ One grid holds the triangles (VTK type 5) and after them the constrained edges (
                 regions: steel      number of a named region
                 columns: u          2 for a field that had 2 columns
 
-In those names ``% " & < >`` and control characters are written as %25, %22, ... (VTK does not escape
-them when it saves a file again). Names are in the names of arrays because meshio, through which many read `.vtu`, stops at arrays of
-strings. meshio (5.3.5) is not used here: it writes no FieldData, and of a file with several pieces
-it reads only the cells of the last.
+Names are in the names of arrays because meshio, through which many read `.vtu`, stops at arrays of
+strings. There ``% " & < >`` and control characters are %25, %22, ..., since VTK does not escape
+them when it saves a file again. meshio (5.3.5) is not used here: it writes no FieldData, and of a
+file with several pieces it reads only the cells of the last.
 """
 
 from __future__ import annotations
