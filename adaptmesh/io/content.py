@@ -1,0 +1,212 @@
+"""What a file says, and the checks between that and a `Mesh`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import FormatError
+from ..mesh import Mesh
+
+Array = NDArray[Any]
+
+_INT32 = np.iinfo(np.int32)
+
+
+@dataclass
+class Content:
+    """Arrays and names of one file, not yet checked against one another.
+
+    Points are (n, 2) or (n, 3); fields are at the points or at the triangles; the metric is
+    packed (m11, m12, m22).
+    """
+
+    points: Array
+    triangles: Array
+    regions: Array
+    edges: Array
+    edge_tags: Array
+    names: dict[str, int] = field(default_factory=dict)
+    region_names: dict[str, int] = field(default_factory=dict)
+    point_fields: dict[str, Array] = field(default_factory=dict)
+    triangle_fields: dict[str, Array] = field(default_factory=dict)
+    metric: Array | None = None
+
+
+def refuse_cells(counts: Mapping[str, int]) -> None:
+    """Raise for cells that are not triangles, edges or vertices; `counts` by kind."""
+    found = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
+    if found:
+        raise FormatError(
+            f"holds {found}; only triangles with three vertices, edges with two, and lone "
+            "vertices can be read. Split every other cell into such triangles first (for example "
+            "`pyvista.read(path).triangulate()`), and drop solids"
+        )
+
+
+def mesh_of(content: Content) -> Mesh:
+    """The mesh that a file holds; `FormatError` names the first thing that is wrong.
+
+    Clockwise triangles are turned over (their last two vertices are exchanged): the order in
+    which a file lists the vertices says nothing about the geometry. Nothing else is changed.
+    """
+    points = _planar(content.points)
+    triangles = np.asarray(content.triangles, dtype=np.int64)
+    if not len(triangles):
+        raise FormatError("holds no triangles")
+    check_vertices("triangle", triangles, len(points))
+    triangles = _counter_clockwise(points, triangles)
+    _refuse_duplicates("triangle", triangles)
+    edges = np.asarray(content.edges, dtype=np.int64)
+    check_vertices("edge", edges, len(points))
+    _refuse_duplicates("edge", edges)
+    _edges_are_sides(edges, triangles, len(points))
+    return Mesh(
+        points,
+        triangles.astype(np.int32),
+        regions=_tags("region", content.regions),
+        edges=edges.astype(np.int32),
+        edge_tags=_tags("edge tag", content.edge_tags),
+        names=_named("edge tag", content.names),
+        region_names=_named("region", content.region_names),
+    )
+
+
+def fields_of(content: Content, mesh: Mesh) -> dict[str, Array]:
+    """The fields of a file by name, the metric among them as ``metric``."""
+    for place, fields, count in (
+        ("points", content.point_fields, len(mesh.points)),
+        ("triangles", content.triangle_fields, len(mesh.triangles)),
+    ):
+        for name, values in fields.items():
+            if len(values) != count:
+                raise FormatError(f"field {name!r} has {len(values)} rows for {count} {place}")
+    metric = {} if content.metric is None else {"metric": content.metric}
+    out: dict[str, Array] = {}
+    for fields in (content.point_fields, content.triangle_fields, metric):
+        for name, values in fields.items():
+            if name in out:
+                raise FormatError(
+                    f"two fields are called {name!r}, at points or triangles; rename one in the "
+                    "program that wrote the file"
+                )
+            out[name] = values
+    return out
+
+
+def check_vertices(kind: str, cells: Array, count: int) -> None:
+    """Raise for the first cell with a vertex that is not among `count`, or that it has twice."""
+    bad = np.flatnonzero(((cells < 0) | (cells >= count)).any(axis=1))
+    if len(bad):
+        raise FormatError(
+            f"{kind} {bad[0]} has vertices {cells[bad[0]].tolist()}, but the points are numbered "
+            f"from 0 to {count - 1}"
+        )
+    sides = np.sort(cells, axis=1)
+    bad = np.flatnonzero((sides[:, 1:] == sides[:, :-1]).any(axis=1))
+    if len(bad):
+        raise FormatError(f"{kind} {bad[0]} has a vertex twice: {cells[bad[0]].tolist()}")
+
+
+def check_finite(points: Array) -> None:
+    """Raise for the first point with a coordinate that is infinite or not a number."""
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        raise FormatError(f"point {bad[0]} is {tuple(points[bad[0]].tolist())}, not finite")
+
+
+def _planar(points: Array) -> Array:
+    points = np.asarray(points, dtype=np.float64)
+    check_finite(points)
+    if points.shape[1] == 3:
+        off = np.flatnonzero(points[:, 2])
+        if len(off):
+            raise FormatError(
+                f"point {off[0]} is {tuple(points[off[0]].tolist())}: z is not 0. Only plane "
+                "meshes can be read; project or rotate the surface onto z = 0 first"
+            )
+    out: Array = points[:, :2]
+    return out
+
+
+def _counter_clockwise(points: Array, triangles: Array) -> Array:
+    signs = _orientation(points[triangles])
+    flat = np.flatnonzero(signs == 0)
+    if len(flat):
+        t = flat[0]
+        corners = ", ".join(str(tuple(p)) for p in points[triangles[t]].tolist())
+        raise FormatError(
+            f"triangle {t} (vertices {triangles[t].tolist()}) has no area: its corners {corners} "
+            "are on one line; remove it or move a corner"
+        )
+    clockwise = signs < 0
+    out: Array = triangles.copy()
+    out[clockwise] = out[clockwise][:, [0, 2, 1]]
+    return out
+
+
+def _orientation(corners: Array) -> Array:
+    """Exact sign of the area of each triangle (m, 3, 2).
+
+    Floating point decides where its error bound (Shewchuk 1997, `ccwerrboundA`) allows, rational
+    arithmetic elsewhere.
+    """
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    with np.errstate(over="ignore", invalid="ignore"):
+        left = (a[:, 0] - c[:, 0]) * (b[:, 1] - c[:, 1])
+        right = (a[:, 1] - c[:, 1]) * (b[:, 0] - c[:, 0])
+        det = left - right
+        bound = 3.3306690738754716e-16 * (np.abs(left) + np.abs(right)) + 1e-300
+        sure = np.abs(det) > bound
+    signs: Array = np.sign(det)
+    for t in np.flatnonzero(~sure):
+        (ax, ay), (bx, by), (cx, cy) = [[Fraction(x) for x in p] for p in corners[t].tolist()]
+        exact = (ax - cx) * (by - cy) - (ay - cy) * (bx - cx)
+        signs[t] = (exact > 0) - (exact < 0)
+    return signs
+
+
+def _refuse_duplicates(kind: str, cells: Array) -> None:
+    vertices = np.sort(cells, axis=1)
+    order = np.lexsort(vertices.T)  # stable: of equal cells the first in the file comes first
+    again = np.flatnonzero((vertices[order[1:]] == vertices[order[:-1]]).all(axis=1))
+    if len(again):
+        first, second = order[again[0]], order[again[0] + 1]
+        raise FormatError(
+            f"{kind} {second} has the same vertices {cells[second].tolist()} as {kind} {first}; "
+            "remove one of them"
+        )
+
+
+def _edges_are_sides(edges: Array, triangles: Array, count: int) -> None:
+    def keys(pairs: Array) -> Array:
+        out: Array = pairs.min(axis=1) * count + pairs.max(axis=1)
+        return out
+
+    sides = np.concatenate([triangles[:, [1, 2]], triangles[:, [2, 0]], triangles[:, [0, 1]]])
+    bad = np.flatnonzero(~np.isin(keys(edges), keys(sides)))
+    if len(bad):
+        raise FormatError(
+            f"edge {bad[0]} (vertices {edges[bad[0]].tolist()}) is not a side of any triangle; "
+            f"there are {len(bad)} such edges. Remove them, or mesh the plane so that it has them"
+        )
+
+
+def _tags(kind: str, tags: Array) -> Array:
+    tags = np.asarray(tags)
+    bad = np.flatnonzero((tags < _INT32.min) | (tags > _INT32.max))
+    if len(bad):
+        raise FormatError(f"{kind} {int(tags[bad[0]])} does not fit in 32 bits")
+    return tags.astype(np.int32)
+
+
+def _named(kind: str, names: Mapping[str, int]) -> dict[str, int]:
+    for name, tag in names.items():
+        if not _INT32.min <= tag <= _INT32.max:
+            raise FormatError(f"{kind} {tag}, named {name!r}, does not fit in 32 bits")
+    return dict(names)

@@ -1,0 +1,100 @@
+"""The file formats by extension; a new one is a row of `FORMATS` and a module beside this one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import FormatError
+from .content import Content
+from .files import read_bytes
+from .located import located
+
+
+@dataclass(frozen=True)
+class Format:
+    """How files of one extension are read and written.
+
+    Parameters
+    ----------
+    load : callable
+        ``load(path, fields)`` gives what the file says; with `fields` false, files beside it that
+        hold only fields need not be read.
+    save : callable
+        ``save(path, content, **options)`` gives the bytes of each file to be written; it writes
+        none itself.
+    options : frozenset of str
+        The keywords of `save`.
+    """
+
+    load: Callable[[Path, bool], Content]
+    save: Callable[..., Mapping[Path, bytes]]
+    options: frozenset[str] = frozenset()
+
+
+def _load_vtu(path: Path, fields: bool) -> Content:
+    from .vtu import decode
+
+    data = read_bytes(path)
+    with located(path):
+        return decode(data)
+
+
+def _save_vtu(path: Path, content: Content) -> dict[Path, bytes]:
+    from .vtu import encode
+
+    return {path: encode(content)}
+
+
+def _load_gmsh(path: Path, fields: bool) -> Content:
+    from .gmsh import decode
+
+    data = read_bytes(path)
+    with located(path):
+        return decode(data)
+
+
+def _save_gmsh(path: Path, content: Content, **options: object) -> dict[Path, bytes]:
+    from .gmsh import encode
+
+    return {path: encode(content, **options)}  # type: ignore[arg-type]
+
+
+def _load_medit(path: Path, fields: bool) -> Content:
+    from .medit import decode
+    from .sol import add_companions
+
+    data = read_bytes(path)
+    with located(path):
+        content = decode(data, binary=path.suffix.lower() == ".meshb")
+    if fields:
+        add_companions(content, path)
+    return content
+
+
+def _save_medit(path: Path, content: Content) -> dict[Path, bytes]:
+    from .medit import encode
+    from .sol import encode_companions
+
+    binary = path.suffix.lower() == ".meshb"
+    return {path: encode(content, binary=binary), **encode_companions(content, path)}
+
+
+FORMATS: dict[str, Format] = {
+    ".vtu": Format(_load_vtu, _save_vtu),
+    ".msh": Format(_load_gmsh, _save_gmsh, frozenset({"version", "binary"})),
+    ".mesh": Format(_load_medit, _save_medit),
+    ".meshb": Format(_load_medit, _save_medit),
+}
+"""Format by extension in lower case."""
+
+
+def format_of(path: Path) -> Format:
+    """The format that the extension of a path tells."""
+    found = FORMATS.get(path.suffix.lower())
+    if found is None:
+        raise FormatError(
+            f"{path}: the extension {path.suffix!r} is not known; known are {', '.join(FORMATS)}"
+        )
+    return found

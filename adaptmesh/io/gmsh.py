@@ -1,0 +1,389 @@
+"""Gmsh meshes, `.msh`: what both versions share, and which version it is.
+
+Names are physical groups: edge tags physical curves, regions physical surfaces; tag 0 is in no
+group. A field is a `$NodeData` or `$ElementData` view; one with 2 columns is written with a third
+of zeros, the metric as the 9-component tensor view ``metric``. Nodes and elements come out in the
+order of their tags, so a mesh written and read keeps its numbering.
+
+What Gmsh cannot say goes into a section of our own, which Gmsh skips::
+
+    $Adaptmesh
+    {"edges": {"say \\"hi\\"": 3}, "regions": {}, "plane_fields": ["u"]}
+    $EndAdaptmesh
+
+`edges` and `regions` are there only if `$PhysicalNames` cannot hold the names as they are (with a
+quote, a $ or a line break, longer than 127 bytes, two for one tag, or for tag 0), and then stand in
+its place; Gmsh shows them with ' for a quote and blanks.
+
+When Gmsh saves a mesh again, it leaves out what is in no group as soon as there is any group; give
+every region a tag, or set its option `Mesh.SaveAll`.
+
+meshio (5.3.5) is not used here: for 4.1 it writes only physical groups of entities that own a
+node, and groups the nodes by entity without putting them back into order when it reads; it reads
+binary data only for all nodes in a row; and it takes corrupt counts at their word.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..errors import FormatError
+from .content import Array, Content, refuse_cells
+from .located import located
+from .records import BinaryCursor, TextCursor, table
+
+NODES_OF_TYPE = {1: 2, 2: 3, 15: 1}
+"""Vertices of the element types that are read: edges, triangles, lone vertices."""
+_KINDS = {
+    3: "quadrilaterals", 4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids",
+    8: "edges of second order", 9: "triangles of second order", 10: "quadrilaterals with 9 nodes",
+    11: "tetrahedra of second order", 16: "quadrilaterals with 8 nodes",
+}  # fmt: skip
+_LONGEST_NAME = 127
+
+
+@dataclass
+class Elements:
+    """Elements of one type: tag, vertices by node tag, and physical group of each."""
+
+    tags: Array
+    nodes: Array
+    physical: Array
+
+
+@dataclass
+class Sections:
+    """What the sections of a `.msh` file say, before they are brought together."""
+
+    node_tags: Array = field(default_factory=lambda: np.empty(0, np.int64))
+    points: Array = field(default_factory=lambda: np.empty((0, 3)))
+    elements: dict[int, Elements] = field(default_factory=dict)
+    names: dict[int, dict[str, int]] = field(default_factory=dict)
+    groups: dict[tuple[int, int], list[int]] = field(default_factory=dict)
+    node_data: dict[str, tuple[Array, Array]] = field(default_factory=dict)
+    element_data: dict[str, tuple[Array, Array]] = field(default_factory=dict)
+    ours: dict[str, Any] = field(default_factory=dict)
+
+    def add(self, kind: int, parts: list[Elements]) -> None:
+        """Bring the blocks of one type of element together."""
+        self.elements[kind] = Elements(
+            np.concatenate([p.tags for p in parts]),
+            np.concatenate([p.nodes for p in parts]),
+            np.concatenate([p.physical for p in parts]),
+        )
+
+
+def refuse_element_types(counts: dict[int, int]) -> None:
+    """Raise for element types that are not read; `counts` by Gmsh's number of the type."""
+    refuse_cells(
+        {
+            _KINDS.get(t, f"elements of Gmsh type {t}"): n
+            for t, n in counts.items()
+            if t not in NODES_OF_TYPE
+        }
+    )
+
+
+# ---------------------------------------------------------------------------------------- reading
+
+
+def decode(data: bytes) -> Content:
+    """What a `.msh` file says, of version 2.2 or 4.1, text or binary."""
+    from . import gmsh22, gmsh41
+
+    sections = list(_sections(data))
+    if not sections or sections[0][0] != "MeshFormat":
+        raise FormatError("does not start with $MeshFormat: it is damaged or not a Gmsh file")
+    version, order = _version(sections[0][1])
+    readers = gmsh41.READERS if version.startswith("4") else gmsh22.READERS
+    out = Sections()
+    for name, body in sections[1:]:
+        with located(f"${name}"):
+            if name in readers:
+                cursor = _cursor(body, order)
+                readers[name](cursor, out)
+                if cursor.left_over():
+                    raise FormatError("holds more than its counts say: the file is damaged")
+            elif name in _TEXT_READERS:
+                _TEXT_READERS[name](body, out)
+            elif name in ("NodeData", "ElementData"):
+                _read_view(body, order, out.node_data if name == "NodeData" else out.element_data)
+            elif name == "PartitionedEntities":
+                raise FormatError("the mesh is partitioned; save it whole")
+    return _together(out)
+
+
+def _sections(data: bytes) -> Iterator[tuple[str, bytes]]:
+    """Name and body of each ``$Name ... $EndName``; between them only blanks."""
+    at, end_of_file = 0, len(data.rstrip())
+    while at < end_of_file:
+        opening = re.compile(rb"\s*\$(\w+)[ \t\r]*\n").match(data, at)
+        if not opening:
+            raise FormatError(f"a section $Name was expected, found {data[at : at + 24]!r}")
+        name = opening.group(1)
+        end = data.find(b"$End" + name, opening.end())
+        if end < 0:
+            raise FormatError(f"${name.decode()} has no $End{name.decode()}: the file is cut short")
+        yield name.decode(), data[opening.end() : end]
+        at = end + len(b"$End" + name)
+
+
+def _cursor(body: bytes, order: str | None) -> TextCursor | BinaryCursor:
+    return TextCursor(body) if order is None else BinaryCursor(body, order)
+
+
+def _version(body: bytes) -> tuple[str, str | None]:
+    """Version, and byte order of a binary file."""
+    line, _, rest = body.partition(b"\n")
+    words = line.decode("ascii", "replace").split()
+    if len(words) != 3 or words[1] not in ("0", "1"):
+        raise FormatError(f"$MeshFormat: {line!r} is not a version, a type and a size")
+    if words[0] not in ("2", "2.1", "2.2", "4.1"):
+        raise FormatError(
+            f"is of Gmsh version {words[0]}; 2.2 and 4.1 can be read: "
+            "`gmsh in.msh -save -format msh41 -o out.msh` converts it"
+        )
+    if words[2] != "8":
+        raise FormatError(f"$MeshFormat: numbers of {words[2]} bytes; only 8 can be read")
+    if words[1] == "0":
+        return words[0], None
+    orders = {b"\x01\0\0\0": "<", b"\0\0\0\x01": ">"}
+    if rest[:4] not in orders:
+        raise FormatError("$MeshFormat: the binary 1 that tells the byte order is damaged")
+    return words[0], orders[rest[:4]]
+
+
+def _read_names(body: bytes, out: Sections) -> None:
+    lines = [line for line in _text(body).splitlines() if line.strip()]
+    rows = [re.match(r'\s*(\d+)\s+(-?\d+)\s+"(.*)"\s*$', line) for line in lines[1:]]
+    if not lines or lines[0].strip() != str(len(rows)):
+        raise FormatError(f"its first line is not the number of names that follow, {len(rows)}")
+    for row, line in zip(rows, lines[1:], strict=True):
+        if row is None:
+            raise FormatError(f'{line!r} is not: dimension, tag, "name"')
+        out.names.setdefault(int(row[1]), {})[row[3]] = int(row[2])
+
+
+def _read_ours(body: bytes, out: Sections) -> None:
+    try:
+        ours = json.loads(_text(body))
+    except ValueError as error:
+        raise FormatError(f"is not JSON: {error}") from None
+    names = [ours.get("edges", {}), ours.get("regions", {})] if isinstance(ours, dict) else [None]
+    for group in names:
+        if not isinstance(group, dict) or not all(type(tag) is int for tag in group.values()):
+            raise FormatError("is not what adaptmesh writes: the file is damaged")
+    out.ours = ours
+
+
+_TEXT_READERS = {"PhysicalNames": _read_names, "Adaptmesh": _read_ours}
+
+
+def _text(body: bytes) -> str:
+    try:
+        return body.decode()
+    except UnicodeDecodeError:
+        raise FormatError("the names are not UTF-8 text") from None
+
+
+def _read_view(body: bytes, order: str | None, views: dict[str, tuple[Array, Array]]) -> None:
+    """One view: its header of strings, reals and integers in lines, then tag and values by row.
+
+    Of several time steps of one name the last in the file is kept.
+    """
+    header: list[list[bytes]] = []
+    for _ in range(3):
+        line, _, body = body.partition(b"\n")
+        tags: list[bytes] = []
+        for _ in range(_integer(line)):
+            line, newline, body = body.partition(b"\n")
+            if not newline:
+                raise FormatError("cut short within its header")
+            tags.append(line)
+        header.append(tags)
+    strings, _, integers = header
+    if not strings or len(integers) < 3:
+        raise FormatError("its header lacks the name, the components or the count of values")
+    columns, count = _integer(integers[1]), _integer(integers[2])
+    if not 1 <= columns <= 9:
+        raise FormatError(f"a view with {columns} components; 1 to 9 can be read")
+    cursor = _cursor(body, order)
+    tags_of_rows, values = cursor.rows(count, ("i4", 1), ("f8", columns))
+    if cursor.left_over():
+        raise FormatError("holds more than its counts say: the file is damaged")
+    views[_text(strings[0]).strip().strip('"')] = tags_of_rows[:, 0], values
+
+
+def _integer(word: bytes) -> int:
+    if not re.fullmatch(rb"\s*\d{1,18}\s*", word):
+        raise FormatError(f"a count was expected, found {word[:24]!r}")
+    return int(word)
+
+
+def _together(file: Sections) -> Content:
+    order = np.argsort(file.node_tags, kind="stable")
+    node_tags = file.node_tags[order]
+    _refuse_twice("node", node_tags)
+    triangles, edges = (file.elements.get(t, _no_elements(t)) for t in (2, 1))
+    for elements in (triangles, edges):
+        by_tag = np.argsort(elements.tags, kind="stable")
+        elements.tags, elements.physical = elements.tags[by_tag], elements.physical[by_tag]
+        elements.nodes = _numbers(elements.nodes[by_tag], node_tags, elements.tags)
+    plane = file.ours.get("plane_fields", [])
+    names, regions = file.names.get(1, {}), file.names.get(2, {})
+    point_fields = {
+        name: _field(name, view, node_tags, plane) for name, view in file.node_data.items()
+    }
+    return Content(
+        file.points[order],
+        triangles.nodes,
+        triangles.physical,
+        edges.nodes,
+        edges.physical,
+        names=file.ours.get("edges", names),
+        region_names=file.ours.get("regions", regions),
+        metric=_packed(point_fields),
+        point_fields=point_fields,
+        triangle_fields={
+            name: _field(name, view, triangles.tags, plane)
+            for name, view in file.element_data.items()
+            if np.isin(view[0], triangles.tags).any()
+        },
+    )
+
+
+def _no_elements(kind: int) -> Elements:
+    nothing = np.empty(0, np.int64)
+    return Elements(nothing, np.empty((0, NODES_OF_TYPE[kind]), np.int64), nothing)
+
+
+def _refuse_twice(kind: str, sorted_tags: Array) -> None:
+    again = np.flatnonzero(sorted_tags[1:] == sorted_tags[:-1])
+    if len(again):
+        raise FormatError(f"{kind} {sorted_tags[again[0]]} is there twice")
+
+
+def _numbers(nodes: Array, node_tags: Array, element_tags: Array) -> Array:
+    """Row of each node tag in the sorted tags."""
+    rows = np.searchsorted(node_tags, nodes)
+    known = rows < len(node_tags)
+    known[known] = node_tags[rows[known]] == nodes[known]
+    missing = np.argwhere(~known)
+    if len(missing):
+        i, j = missing[0]
+        raise FormatError(
+            f"element {element_tags[i]} has the node {nodes[i, j]}, which is not in $Nodes"
+        )
+    return rows
+
+
+def _field(name: str, view: tuple[Array, Array], tags: Array, plane: object) -> Array:
+    """Values in the order of the sorted `tags`; NaN where the view has none."""
+    rows = np.searchsorted(tags, view[0])
+    known = rows < len(tags)
+    known[known] = tags[rows[known]] == view[0][known]
+    out = np.full((len(tags), view[1].shape[1]), np.nan)
+    out[rows[known]] = view[1][known]
+    if isinstance(plane, list) and name in plane:
+        out = out[:, :2]
+    return out[:, 0] if out.shape[1] == 1 else out
+
+
+def _packed(fields: dict[str, Array]) -> Array | None:
+    """Take ``metric`` out if it is a plane symmetric tensor."""
+    tensor = fields.get("metric")
+    if tensor is None or tensor.ndim != 2 or tensor.shape[1] != 9:
+        return None
+    if (tensor[:, 1] != tensor[:, 3]).any() or tensor[:, [2, 5, 6, 7]].any():
+        return None
+    return fields.pop("metric")[:, [0, 1, 4]]
+
+
+# ---------------------------------------------------------------------------------------- writing
+
+
+def encode(content: Content, *, version: str = "4.1", binary: bool = True) -> bytes:
+    """The bytes of a `.msh` file."""
+    from . import gmsh22, gmsh41
+
+    writers = {"4.1": gmsh41.body, "2.2": gmsh22.body}
+    if version not in writers:
+        raise FormatError(f"there is no version {version!r} to write; choose '4.1' or '2.2'")
+    for kind, tags in (("edge tag", content.edge_tags), ("region", content.regions)):
+        if len(tags) and tags.min() < 0:
+            raise FormatError(
+                f"{kind} {tags.min()} is negative, but physical groups of Gmsh are numbered from 1 "
+                "(0: in none); renumber it"
+            )
+    parts = [section("MeshFormat", f"{version} {int(binary)} 8\n".encode() + _one(binary))]
+    parts += _names_sections(content)
+    sections, nodes, triangles = writers[version](content, binary)
+    parts += sections
+    for name, values in content.point_fields.items():
+        parts.append(section("NodeData", _view(name, values, nodes, binary), binary))
+    if content.metric is not None:
+        m11, m12, m22 = content.metric.T
+        zero = np.zeros(len(m11))
+        tensor = np.stack([m11, m12, zero, m12, m22, zero, zero, zero, zero], axis=1)
+        parts.append(section("NodeData", _view("metric", tensor, nodes, binary), binary))
+    for name, values in content.triangle_fields.items():
+        parts.append(section("ElementData", _view(name, values, triangles, binary), binary))
+    return b"".join(parts)
+
+
+def section(name: str, body: bytes, binary: bool = False) -> bytes:
+    """A section with its first and last line; after bytes a line break comes before ``$End``."""
+    newline = b"\n" if binary else b""
+    return b"$%b\n%b%b$End%b\n" % (name.encode(), body, newline, name.encode())
+
+
+def _one(binary: bool) -> bytes:
+    return b"\x01\0\0\0\n" if binary else b""
+
+
+def _names_sections(content: Content) -> list[bytes]:
+    lines: list[str] = []
+    ours: dict[str, object] = {}
+    for dim, key, names in ((1, "edges", content.names), (2, "regions", content.region_names)):
+        shown = {tag: _shown(name) for name, tag in reversed(names.items()) if tag > 0}
+        lines += [f'{dim} {tag} "{name}"\n' for tag, name in sorted(shown.items())]
+        if {name: tag for tag, name in shown.items()} != names:
+            ours[key] = dict(names)
+    fields = {**content.point_fields, **content.triangle_fields}
+    plane = [name for name, values in fields.items() if values.ndim == 2 and values.shape[1] == 2]
+    if plane:
+        ours["plane_fields"] = plane
+    parts = []
+    if lines:
+        parts.append(section("PhysicalNames", f"{len(lines)}\n{''.join(lines)}".encode()))
+    if ours:
+        parts.append(section("Adaptmesh", _json(ours)))
+    return parts
+
+
+def _shown(name: str) -> str:
+    """The name as far as `$PhysicalNames` can hold it."""
+    plain = "".join(c if c.isprintable() else " " for c in name.replace('"', "'"))
+    return plain.replace("$", " ").encode()[:_LONGEST_NAME].decode(errors="ignore").strip()
+
+
+def _json(ours: Mapping[str, object]) -> bytes:
+    return (json.dumps(ours).replace("$", "\\u0024") + "\n").encode()
+
+
+def _view(name: str, values: Array, order: Array, binary: bool) -> bytes:
+    """A view, row by row in the order in which the file has the nodes or elements.
+
+    Each row bears its tag, so any order would do for Gmsh; but meshio does not look at the tags.
+    """
+    rows = values.reshape(len(values), -1)[order]
+    if rows.shape[1] == 2:
+        rows = np.column_stack([rows, np.zeros(len(rows))])
+    header = f'1\n"{name}"\n1\n0\n3\n0\n{rows.shape[1]}\n{len(rows)}\n'.encode()
+    return header + table(binary, ("i4", order + 1), ("f8", rows))

@@ -1,0 +1,160 @@
+"""Medit meshes, `.mesh` (text) and `.meshb` (binary), also called Gamma Mesh Format.
+
+Triangles bear their region as reference, edges their tag, vertices 0. Medit knows no names, so
+they are put where its readers skip them:
+
+    .mesh   comment lines        # adaptmesh edge 3 "inlet"      (the name as a JSON string)
+                                 # adaptmesh region 1 "steel"
+    .meshb  ReferenceStrings     libMeshb's keyword 199: keyword of the cells (5 edges,
+                                 6 triangles), reference, name in 256 bytes of UTF-8
+
+Fields are in files of their own, see `adaptmesh.io.sol`. Source of the formats: libMeshb 7,
+<https://github.com/LoicMarechal/libMeshb>.
+
+meshio (5.3.5) is not used here: it has no `.sol` files, knows neither names nor all keywords
+(on an unknown one it gives up), and takes corrupt counts at their word.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+
+import numpy as np
+
+from ..errors import FormatError
+from .content import Content, refuse_cells
+from .located import located
+from .medit_keywords import (
+    NUMBERS,
+    Keyword,
+    MeditFile,
+    binary_file,
+    count,
+    dimension,
+    opened,
+    text_file,
+)
+from .records import table
+
+# columns of integers, the last of which is the reference
+_CELLS = {"Edges": 3, "Triangles": 4}
+_OTHER_CELLS = {
+    "Quadrilaterals": 5, "Tetrahedra": 5, "Prisms": 7, "Pyramids": 6, "Hexahedra": 9,
+    "Hexaedra": 9, "TrianglesP2": 7, "EdgesP2": 4,
+}  # fmt: skip
+_NAME_BYTES = 256
+_COMMENT = re.compile(rb'#[ \t]*adaptmesh (edge|region) (-?\d{1,10}) (".*")[ \t\r]*$', re.MULTILINE)
+
+
+# ---------------------------------------------------------------------------------------- reading
+
+
+def decode(data: bytes, *, binary: bool) -> Content:
+    """What a `.mesh` or `.meshb` file says; its fields are in other files."""
+    file = opened(data, binary=binary)
+    names = {"edge": {}, "region": {}} if binary else _commented_names(data)
+    dim, vertices, cells = 0, None, {}
+    while (keyword := file.next_keyword()) != "End":
+        with located(keyword):
+            if keyword == "Dimension":
+                dim = dimension(file)
+            elif keyword == "Vertices":
+                if not dim:
+                    raise FormatError("come before Dimension, the number of their coordinates")
+                rows = file.cursor.rows(count(file), (file.real, dim), (file.integer, 1))
+                vertices = rows[0]
+            elif keyword in _CELLS or keyword in _OTHER_CELLS:
+                width = _CELLS.get(keyword) or _OTHER_CELLS[keyword]
+                cells[keyword] = file.cursor.rows(count(file), (file.integer, width))[0]
+            elif keyword == "ReferenceStrings" and binary:
+                _take_names(names, file)
+            else:
+                file.skip()
+    if vertices is None:
+        raise FormatError("has no Vertices")
+    refuse_cells({name: len(cells[name]) for name in _OTHER_CELLS if name in cells})
+    triangles = cells.get("Triangles", np.empty((0, 4), np.int64))
+    edges = cells.get("Edges", np.empty((0, 3), np.int64))
+    return Content(
+        vertices,
+        triangles[:, :3] - 1,
+        triangles[:, 3],
+        edges[:, :2] - 1,
+        edges[:, 2],
+        names=names["edge"],
+        region_names=names["region"],
+    )
+
+
+def _commented_names(data: bytes) -> dict[str, dict[str, int]]:
+    names: dict[str, dict[str, int]] = {"edge": {}, "region": {}}
+    for kind, tag, quoted in _COMMENT.findall(data):
+        names[kind.decode()][_unquoted(quoted)] = int(tag)
+    return names
+
+
+def _unquoted(quoted: bytes) -> str:
+    try:
+        return str(json.loads(quoted))
+    except ValueError:
+        raise FormatError(f"the name {quoted[:80]!r} in a comment is damaged") from None
+
+
+def _take_names(names: dict[str, dict[str, int]], file: MeditFile) -> None:
+    kinds = {NUMBERS["Edges"]: "edge", NUMBERS["Triangles"]: "region"}
+    rows = file.cursor.rows(count(file), (file.integer, 2), ("u1", _NAME_BYTES))
+    for (keyword, tag), codes in zip(rows[0].tolist(), rows[1], strict=True):
+        code = bytes(codes.astype(np.uint8)).partition(b"\0")[0]
+        try:
+            name = code.decode()
+        except UnicodeDecodeError:
+            raise FormatError(f"the name {code!r} is not UTF-8 text") from None
+        if keyword in kinds:
+            names[kinds[keyword]][name] = tag
+
+
+# ---------------------------------------------------------------------------------------- writing
+
+
+def encode(content: Content, *, binary: bool) -> bytes:
+    """The bytes of a `.mesh` or `.meshb` file, without the fields."""
+    n = len(content.points)
+    tables = [
+        ("Vertices", [("f8", content.points), ("i4", np.zeros(n, np.int32))]),
+        ("Edges", [("i4", content.edges + 1), ("i4", content.edge_tags)]),
+        ("Triangles", [("i4", content.triangles + 1), ("i4", content.regions)]),
+    ]
+    keywords: list[Keyword] = [
+        (name, [len(columns[0][1])], table(binary, *columns))
+        for name, columns in tables
+        if len(columns[0][1])
+    ]
+    if binary:
+        if content.names or content.region_names:
+            keywords.insert(0, _reference_strings(content))
+        return binary_file(keywords)
+    return text_file(keywords, _comments(content))
+
+
+def _comments(content: Content) -> str:
+    return "".join(
+        f"# adaptmesh {kind} {tag} {json.dumps(name, ensure_ascii=False)}\n"
+        for kind, names in (("edge", content.names), ("region", content.region_names))
+        for name, tag in names.items()
+    )
+
+
+def _reference_strings(content: Content) -> Keyword:
+    rows = []
+    for keyword, names in (("Edges", content.names), ("Triangles", content.region_names)):
+        for name, tag in names.items():
+            code = name.encode()
+            if len(code) >= _NAME_BYTES or b"\0" in code:
+                raise FormatError(
+                    f"the name {name[:40]!r}... has {len(code)} bytes; .meshb holds at most "
+                    f"{_NAME_BYTES - 1}: shorten it, or write .mesh"
+                )
+            codes = np.frombuffer(code.ljust(_NAME_BYTES, b"\0"), np.uint8)
+            rows.append(table(True, ("i4", [[NUMBERS[keyword], tag]]), ("u1", codes[None])))
+    return "ReferenceStrings", [len(rows)], b"".join(rows)
