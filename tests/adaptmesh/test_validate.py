@@ -7,12 +7,13 @@ from types import SimpleNamespace
 import hypothesis.extra.numpy as hnp
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from adaptmesh.errors import AdaptmeshError
 from adaptmesh.invariants import fidelity
 from adaptmesh.mesh import Mesh
 from adaptmesh.validate import InvalidMeshError, Validity, validate
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], float)
 HALVES = np.array([[0, 1, 2], [0, 2, 3]])
@@ -183,7 +184,7 @@ def test_negative_tag():
 def test_two_turns_around_a_point():
     # a strip wound twice around the origin, closed by a fan: every triangle is positive
     n = 10
-    points, triangles = ring(n, turns=2)
+    points = ring(n, turns=2)[0]
     points = np.concatenate([points[n:] + 0.01 * np.arange(n)[:, None], [[0.03, 0.02]]])
     fan = [[i, (i + 1) % n, n] for i in range(n)]
     check = validate(bounded(points, fan))["single turn"]
