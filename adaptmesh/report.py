@@ -170,7 +170,7 @@ def measure(mesh: Mesh, metric: Any) -> Report:
     >>> report.unit_fraction, round(report.quality_min, 12)
     (1.0, 1.0)
     """
-    _check_measurable(mesh)
+    check_measurable(mesh)
     field = control_space_on(mesh, metric)
     edges, edges_of_triangle = numbered_edges(mesh.triangles, len(mesh.points))
     lengths = edge_lengths(mesh.points, edges, field)
@@ -251,7 +251,7 @@ def _plain(value: Any) -> Any:
     return None if value == float("inf") else value
 
 
-def _check_measurable(mesh: Mesh) -> None:
+def check_measurable(mesh: Mesh) -> None:
     t, n = mesh.triangles, len(mesh.points)
     if len(t) == 0:
         raise InvalidMeshError("the mesh has no triangles: there is nothing to measure")
