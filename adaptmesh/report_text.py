@@ -52,7 +52,11 @@ def _key_figures(report: Report) -> Table:
     quantiles = r.length_quantiles
     rows = [
         ("mesh", _count(r.n_triangles), f"triangles, {_count(r.n_points)} points"),
-        ("ideal", _count(r.ideal_triangles), f"triangles = (4/√3) C, complexity C {r.complexity:.6g}"),
+        (
+            "ideal",
+            _count(r.ideal_triangles),
+            f"triangles = (4/√3) C, complexity C {r.complexity:.6g}",
+        ),
         ("count ratio", f"{r.count_ratio:.3f}", "triangles / ideal"),
         ("unit edges", _percent(r.unit_fraction), f"of {_count(r.n_edges)}, in [1/√2, √2]"),
         ("", _percent(r.short_fraction), "shorter"),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .frame import Frame
 from .paint import View
 
 Floats = NDArray[np.float64]
@@ -14,6 +15,7 @@ Ints = NDArray[np.integer]
 
 SIDES = 64  # of the polygon that is drawn
 TRIES = 30  # places looked at for each ellipse
+GAP = 1.15  # between neighbours
 SMALLEST = 10.0  # pixels; smaller ellipses are enlarged, all by the same factor
 
 
@@ -39,25 +41,29 @@ class Ellipses:
         return out
 
 
-def choose(places: Floats, tensors: Floats, most: int, pixel: Floats) -> Ellipses:
-    """Ellipses that do not touch, taken from candidates in their order.
+def choose(places: Floats, tensors: Floats, most: int, frame: Frame) -> Ellipses:
+    """Ellipses that do not touch and stay in the view, taken from candidates in their order.
 
     Parameters
     ----------
     places : (n, 2) array of float
     tensors : (n, 3) array of float
     most : int
-    pixel : (2,) array of float
-        Pixels for each unit of x and of y.
+    frame : Frame
     """
-    radius = (tensors[:, 0] * tensors[:, 2] - tensors[:, 1] ** 2) ** -0.25
-    enlarged = _nice(SMALLEST / (float(np.median(radius)) * float(pixel.min())))
+    pixels = frame.factor * frame.pixel
+    det = tensors[:, 0] * tensors[:, 2] - tensors[:, 1] ** 2
+    enlarged = _nice(SMALLEST / (float(np.median(det**-0.25)) * float(pixels.min())))
+    halves = enlarged * np.sqrt(tensors[:, [2, 0]] / det[:, None])  # of the boxes around them
+    room = frame.spill / pixels
+    low, high = np.array(frame.bounds[:2]) - room, np.array(frame.bounds[2:]) + room
+    fits = ((places - halves >= low) & (places + halves <= high)).all(axis=1)
     kept: list[int] = []
-    for i in range(len(places)):
+    for i in np.flatnonzero(fits) if fits.any() else range(len(places)):
         d = places[kept] - places[i]
         reach = enlarged * (1 / _norm(tensors[kept], d) + 1 / _norm(tensors[i : i + 1], d))
-        if (reach * 1.15 < 1).all():  # both radii in the direction of d, as a share of |d|
-            kept.append(i)
+        if (reach * GAP < 1).all():  # both radii in the direction of d, as a share of its length
+            kept.append(int(i))
         if len(kept) == most:
             break
     return Ellipses(places[kept], tensors[kept], enlarged)

@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 Bounds = tuple[float, float, float, float]
 
 MOST_ELONGATED = 12.0  # a longer view is stretched, so that there is something to see
-LONG_SIDE = 1200  # pixels of the view in a picture whose size is not given
+LONG_SIDE = 1000  # pixels of the view in a picture whose size is not given
 SHORT_SIDE = 240
 
 
@@ -98,6 +98,19 @@ class Frame:
         """The point of the frame that is in the middle of the window."""
         up = (self.header - 0.5 * self.margin) / 2
         return self.key / 2 / self.pixel, up / self.pixel
+
+    @cached_property
+    def view(self) -> tuple[float, float, float, float]:
+        """The view in pixels of the window, (x0, y0, x1, y1)."""
+        half = self.size * self.pixel / 2
+        middle = np.array(self.window) / 2 - np.array(self.centre) * self.pixel
+        (x0, y0), (x1, y1) = (middle - half).tolist(), (middle + half).tolist()
+        return x0, y0, x1, y1
+
+    @property
+    def spill(self) -> float:
+        """Pixels by which things at the border may reach out of the view."""
+        return 0.75 * self.margin
 
     def place(self, points: Floats, height: float = 0.0) -> NDArray[np.float32]:
         """Points (n, 2) of the mesh as points (n, 3) of the frame, at a height above it."""

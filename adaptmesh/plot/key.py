@@ -52,7 +52,7 @@ class Pen:
         where = actor.GetPositionCoordinate()
         where.SetCoordinateSystemToNormalizedViewport()
         where.SetValue(x / self.frame.window[0], y / self.frame.window[1])
-        self.plotter.add_actor(actor, name=f"text {id(actor)}", pickable=False)
+        self.plotter.add_actor(actor, pickable=False)
 
     def rectangles(self, boxes: Sequence[Sequence[float]], colours: Bytes) -> None:
         """Fill boxes (x0, y0, x1, y1), each in its colour."""
@@ -71,7 +71,7 @@ class Pen:
         mapper.SetTransformCoordinate(viewport)
         actor = vtkActor2D()
         actor.SetMapper(mapper)
-        self.plotter.add_actor(actor, name=f"boxes {id(actor)}", pickable=False)
+        self.plotter.add_actor(actor, pickable=False)
 
 
 def draw_header(pen: Pen, title: str | None, caption: str) -> None:
@@ -85,17 +85,23 @@ def draw_header(pen: Pen, title: str | None, caption: str) -> None:
         pen.text(caption, frame.margin, top - 20 * u, colour=FADED, size=16)
 
 
-def draw_surroundings(pen: Pen) -> None:
-    """Cover what reaches out of the view, and draw a line around it."""
+def draw_surroundings(pen: Pen, outline: bool) -> None:
+    """Cover what reaches out of the view by more than half the margin, or draw a line around it."""
     frame = pen.frame
     width, height = frame.window
-    half = frame.size * frame.pixel / 2
-    middle = np.array(frame.window) / 2 - np.array(frame.centre) * frame.pixel
-    (x0, y0), (x1, y1) = middle - half, middle + half
+    x0, y0, x1, y1 = frame.view
+    if outline:
+        sides = [
+            (x0, y0, x1, y0 + 1),
+            (x0, y1 - 1, x1, y1),
+            (x0, y0, x0 + 1, y1),
+            (x1 - 1, y0, x1, y1),
+        ]
+        pen.rectangles(sides, np.tile(rgb(FADED), (4, 1)))
+    else:
+        x0, y0, x1, y1 = x0 - frame.spill, y0 - frame.spill, x1 + frame.spill, y1 + frame.spill
     around = [(0, 0, width, y0), (0, y1, width, height), (0, y0, x0, y1), (x1, y0, width, y1)]
     pen.rectangles(around, np.tile(rgb(PAPER), (4, 1)))
-    sides = [(x0, y0, x1, y0 + 1), (x0, y1 - 1, x1, y1), (x0, y0, x0 + 1, y1), (x1 - 1, y0, x1, y1)]
-    pen.rectangles(sides, np.tile(rgb(FADED), (4, 1)))
 
 
 def draw_scale(pen: Pen, scale: Scale, top: float, length: float) -> float:

@@ -19,6 +19,7 @@ Ints = NDArray[np.integer]
 
 FACES, EDGES, LINES, ELLIPSES = 0.0, 1e-3, 2e-3, 3e-3  # levels above the paper
 CLEAR = 7.0  # pixels between edges from which on they are drawn at full strength
+THICKER = 2.0  # lines are drawn on a finer grid of pixels, see `screen.make_plotter`
 FAINTEST = 4  # of 255; fainter edges are left out
 
 
@@ -99,7 +100,7 @@ def _add_lines(plotter: pv.Plotter, shape: pv.PolyData, width: float) -> None:
         shape,
         scalars="colour",
         rgb=True,
-        line_width=max(width, 0.5),
+        line_width=max(THICKER * width, 1.0),
         lighting=False,
         copy_mesh=False,
     )

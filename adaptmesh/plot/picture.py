@@ -114,10 +114,9 @@ def plot(
     with quiet():
         plotter = make_plotter(frame, True if target is not None else off_screen)
         _draw_mesh(plotter, frame, view, paint, lines, edges)
-        pen = Pen(plotter, frame)
-        if bounds is not None:
-            draw_surroundings(pen)
         chosen = _draw_ellipses(plotter, frame, view, field, most)
+        pen = Pen(plotter, frame)
+        draw_surroundings(pen, outline=bounds is not None)
         draw_header(pen, title, _caption(mesh, frame))
         _draw_key(pen, paint, names, chosen)
         if target is None:
@@ -174,7 +173,7 @@ def _draw_ellipses(
         return None
     vertices = candidates(view, most)
     places = view.mesh.points[vertices]
-    chosen = choose(places, field(places), most, frame.factor * frame.pixel)
+    chosen = choose(places, field(places), most, frame)
     layers.draw_ellipses(plotter, frame, chosen)
     return chosen
 
