@@ -1,0 +1,1 @@
+"""The invariants of a mesh, one function each; `adaptmesh.validate` runs them."""

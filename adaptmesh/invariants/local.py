@@ -1,0 +1,139 @@
+"""The arrays, and the neighbourhood of each triangle, edge and point."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .subject import SHOWN, Finding, Index, Ints, Subject, edge_keys, finding
+
+
+def not_empty(s: Subject) -> Finding:
+    """There are triangles."""
+    m = len(s.mesh.triangles)
+    return Finding(int(m == 0), f"{m} triangles")
+
+
+def finite_points(s: Subject) -> Finding:
+    """No coordinate is infinite or not a number."""
+    bad = np.flatnonzero(~np.isfinite(s.mesh.points).all(axis=1))
+    return finding(bad, "", "points are not finite", lambda v: f"point {s.at(v)}")
+
+
+def indices_in_range(s: Subject) -> Finding:
+    """Triangles and constrained edges name points that exist."""
+    n, m = len(s.mesh.points), len(s.mesh.triangles)
+
+    def outside(rows: Index) -> Ints:
+        return np.flatnonzero(((rows < 0) | (rows >= n)).any(axis=1))
+
+    def show(row: int) -> str:
+        if row < m:
+            return f"triangle {row}: {s.mesh.triangles[row].tolist()}, with {n} points"
+        return f"constrained edge {row - m}: {s.mesh.edges[row - m].tolist()}, with {n} points"
+
+    bad = np.concatenate([outside(s.mesh.triangles), m + outside(s.mesh.edges)])
+    return finding(bad, f"{n} points", "triangles or edges name points that do not exist", show)
+
+
+def positive_triangles(s: Subject) -> Finding:
+    """Every triangle is counter-clockwise and not flat, by exact signs."""
+    signs = s.orient(*s.mesh.triangles.T)
+
+    def show(t: int) -> str:
+        kind = "flat" if signs[t] == 0 else "clockwise"
+        return f"triangle {t} is {kind}: {s.at(*s.mesh.triangles[t])}"
+
+    bad = np.flatnonzero(signs <= 0)
+    return finding(bad, "exact signs", "triangles are flat or clockwise", show)
+
+
+def distinct_points(s: Subject) -> Finding:
+    """No two points have the same coordinates."""
+    order = np.lexsort(s.mesh.points.T)
+    p = s.mesh.points[order]
+    same = (p[1:] == p[:-1]).all(axis=1)
+
+    def show(k: int) -> str:
+        first, second = sorted((int(order[k]), int(order[k + 1])))
+        return f"point {first} and point {s.at(second)}"
+
+    return finding(np.flatnonzero(same), "", "points lie on another one", show)
+
+
+def two_triangles_an_edge(s: Subject) -> Finding:
+    """No edge is the side of three triangles or more."""
+
+    def show(e: int) -> str:
+        start, count = s.sides.first[e], s.sides.count[e]
+        owners = np.sort(s.sides.triangle[start : start + count])[:SHOWN].tolist()
+        return f"edge {s.edge(e)}: {count} triangles, {owners}"
+
+    bad = np.flatnonzero(s.sides.count > 2)
+    good = f"{len(s.sides.first)} edges"
+    return finding(bad, good, "edges have more than two triangles", show)
+
+
+def same_orientation(s: Subject) -> Finding:
+    """The two triangles of an edge run along it in opposite directions."""
+    tail, head = s.sides.tail, s.sides.head
+    same = (tail[1:] == tail[:-1]) & (head[1:] == head[:-1])
+
+    def show(k: int) -> str:
+        both = np.sort(s.sides.triangle[k : k + 2]).tolist()
+        return f"edge {s.at(tail[k], head[k])}: triangles {both}"
+
+    wrong = "pairs of triangles run along their edge in the same direction"
+    return finding(np.flatnonzero(same), "", wrong, show)
+
+
+def points_used(s: Subject) -> Finding:
+    """Every point belongs to a triangle."""
+    bad = np.flatnonzero(~s.used)
+    return finding(bad, "", "points have no triangle", lambda v: f"point {s.at(v)}")
+
+
+def constrained_are_edges(s: Subject) -> Finding:
+    """Every constrained edge is the side of a triangle, and listed once."""
+    keys = edge_keys(*s.mesh.edges.T, len(s.mesh.points))
+    order = np.argsort(keys, kind="stable")
+    again = np.zeros(len(keys), bool)
+    again[order[1:]] = keys[order[1:]] == keys[order[:-1]]
+    missing = s.sides.missing(keys)
+
+    def show(e: int) -> str:
+        why = "is no side of a triangle" if missing[e] else "is listed twice"
+        return f"constrained edge {e} {why}: {s.at(*s.mesh.edges[e])}"
+
+    wrong = "constrained edges are no side of a triangle, or listed twice"
+    return finding(np.flatnonzero(missing | again), f"{len(keys)} of them", wrong, show)
+
+
+def border_is_constrained(s: Subject) -> Finding:
+    """The sides with a single triangle are constrained edges."""
+    border = s.sides.border
+    constrained = np.sort(edge_keys(*s.mesh.edges.T, len(s.mesh.points)))
+    keys = s.sides.keys[border]
+    place = np.searchsorted(constrained, keys)
+    bad = border[np.append(constrained, -1)[place] != keys]
+
+    def show(e: int) -> str:
+        return f"side {s.edge(e)} of triangle {s.sides.triangle[s.sides.first[e]]}"
+
+    good = f"{len(border)} edges of the border"
+    return finding(bad, good, "edges of the border are not constrained", show)
+
+
+def tags(s: Subject) -> Finding:
+    """No tag is negative. One without a name is allowed: files carry bare numbers."""
+    mesh = s.mesh
+    tagged = np.concatenate([mesh.edge_tags, mesh.regions])
+    k = len(mesh.edge_tags)
+
+    def show(i: int) -> str:
+        if i < k:
+            return f"constrained edge {s.at(*mesh.edges[i])}: tag {tagged[i]}"
+        return f"triangle {i - k}: region {tagged[i]}"
+
+    names = len(mesh.names) + len(mesh.region_names)
+    wrong = "constrained edges or triangles have a negative number"
+    return finding(np.flatnonzero(tagged < 0), f"{names} names", wrong, show)

@@ -1,0 +1,137 @@
+"""Colours: numbers to RGB, names to RGB. Restrained, and told apart by the colour-blind."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Bytes = NDArray[np.uint8]
+
+INK = "#22303c"  # text, unnamed boundaries
+FADED = "#6b7885"  # lesser text
+PAPER = "#ffffff"
+FACE = "#e9eef2"  # triangles without a meaning
+EDGE = "#4a5a68"  # edges without a meaning
+ELLIPSE = "#7a3b8f"
+
+# Unit edges recede, short ones are blue, long ones red; in between as far as the octave.
+SHORT = ("#0b2a5b", "#1f5fae", "#6aa5dc")
+UNIT = ("#a9b8ae", "#94aa9b", "#a9b8ae")
+LONG = ("#f0995b", "#d1492e", "#7a1010")
+
+# The worse a triangle, the hotter; good ones recede.
+QUALITY = ("#6d0f1a", "#b5352f", "#e27d4e", "#f3c27f", "#e8e6c8", "#bcd5d3", "#86b3c4")
+SIZES = ("#123a5e", "#1f6b8a", "#4ba3a3", "#a5cfa4", "#eceac2")
+FIELD = "viridis"
+
+REGIONS = (
+    "#cfe0ee", "#f6dcc0", "#d4e8cf", "#e9d3e6", "#f5edbb", "#cfe8e6",
+    "#f3cfd0", "#dcd6ee", "#e3dccb", "#c7d3da",
+)  # fmt: skip
+NAMES = (
+    "#0072b2", "#d55e00", "#009e73", "#b8428f", "#c99a00", "#3f9fd8",
+    "#8c2d19", "#5b4ba0", "#5c7f1f", "#7f6a55",
+)  # fmt: skip
+
+
+def rgb(colour: str) -> Bytes:
+    """The bytes of ``#rrggbb``."""
+    return np.frombuffer(bytes.fromhex(colour[1:]), np.uint8)
+
+
+def ramp(colours: Sequence[str], steps: int = 256) -> Bytes:
+    """A table (steps, 3) that runs through colours at equal distances."""
+    anchors = np.array([rgb(colour) for colour in colours], float)
+    at = np.linspace(0, len(anchors) - 1, steps)
+    channels = [np.interp(at, np.arange(len(anchors)), anchors[:, k]) for k in range(3)]
+    return np.stack(channels, axis=1).round().astype(np.uint8)
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Numbers to colours; what is outside [low, high] takes the colour of the end.
+
+    Attributes
+    ----------
+    label : str
+        What the numbers are.
+    table : (k, 3) array of uint8
+    low, high : float
+    logarithmic : bool
+    ticks : tuple of float
+    band : (float, float), optional
+        A range to be marked beside the scale, and what to call it.
+    """
+
+    label: str
+    table: Bytes
+    low: float
+    high: float
+    logarithmic: bool = False
+    ticks: tuple[float, ...] = ()
+    band: tuple[float, float, str] | None = None
+
+    def share(self, values: NDArray[np.floating] | float) -> Floats:
+        """Where on the scale values are, from 0 to 1."""
+        v = np.asarray(values, float)
+        low, high = self.low, self.high
+        if self.logarithmic:
+            v, low, high = np.log(np.maximum(v, 1e-300)), np.log(low), np.log(high)
+        out: Floats = np.clip(np.nan_to_num((v - low) / (high - low)), 0, 1)
+        return out
+
+    def __call__(self, values: Floats) -> Bytes:
+        """The colours of values, (n, 3)."""
+        return self.table[
+            np.minimum(self.share(values) * len(self.table), len(self.table) - 1).astype(int)
+        ]
+
+
+def length_scale(cmap: str | None) -> Scale:
+    """Metric lengths, from a quarter to four; unit edges by themselves in the middle."""
+    table = np.concatenate([ramp(SHORT, 96), ramp(UNIT, 64), ramp(LONG, 96)])
+    return Scale(
+        "metric edge length",
+        table if cmap is None else named(cmap),
+        0.25,
+        4.0,
+        logarithmic=True,
+        ticks=(0.25, 0.5, 2**-0.5, 1, 2**0.5, 2, 4),
+        band=(2**-0.5, 2**0.5, "unit"),
+    )
+
+
+def quality_scale(label: str, cmap: str | None) -> Scale:
+    """Qualities, from 0 to 1."""
+    table = ramp(QUALITY) if cmap is None else named(cmap)
+    return Scale(label, table, 0.0, 1.0, ticks=(0, 0.2, 0.4, 0.6, 0.8, 1))
+
+
+def size_scale(sizes: Floats, cmap: str | None) -> Scale:
+    """Sizes from the least to the greatest, logarithmic."""
+    low, high = float(sizes.min()), float(sizes.max())
+    table = ramp(SIZES) if cmap is None else named(cmap)
+    if high < 1.05 * low:
+        low, high = low / 1.05, high * 1.05
+    return Scale("size", table, low, high, True, tuple(np.geomspace(low, high, 5).tolist()))
+
+
+def field_scale(values: Floats, cmap: str | None) -> Scale:
+    """Any numbers, from the least to the greatest."""
+    finite = values[np.isfinite(values)]
+    low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
+    if not low < high:
+        low, high = low - 0.5, high + 0.5
+    ticks = tuple(np.linspace(low, high, 6).tolist())
+    return Scale("value", named(cmap or FIELD), low, high, ticks=ticks)
+
+
+def named(cmap: str) -> Bytes:
+    """The table of a colour map that pyvista knows."""
+    import pyvista as pv
+
+    return np.asarray(pv.LookupTable(cmap, n_values=256).values)[:, :3]

@@ -1,0 +1,124 @@
+"""What is drawn in the view: triangles, edges, boundaries, ellipses; each on a level of its own."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .colours import ELLIPSE, Bytes, rgb
+from .ellipses import SIDES, Ellipses
+from .frame import Frame
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.integer]
+
+FACES, EDGES, LINES, ELLIPSES = 0.0, 1e-3, 2e-3, 3e-3  # levels above the paper
+CLEAR = 7.0  # pixels between edges from which on they are drawn at full strength
+THICKER = 2.0  # lines are drawn on a finer grid of pixels, see `screen.make_plotter`
+FAINTEST = 4  # of 255; fainter edges are left out
+
+
+def draw_faces(
+    plotter: pv.Plotter, frame: Frame, points: Floats, triangles: Ints, colours: Bytes
+) -> None:
+    """Fill triangles, each in its colour, or between the colours of their vertices."""
+    import pyvista as pv
+
+    shape = pv.PolyData.from_regular_faces(frame.place(points, FACES), triangles)
+    data = shape.cell_data if len(colours) == len(triangles) else shape.point_data
+    data["colour"] = colours
+    plotter.add_mesh(shape, scalars="colour", rgb=True, lighting=False, copy_mesh=False)
+
+
+def draw_edges(
+    plotter: pv.Plotter,
+    frame: Frame,
+    points: Floats,
+    edges: Ints,
+    colours: Bytes,
+    spacing: Floats,
+    width: float,
+    strength: float,
+) -> None:
+    """Draw edges, fainter where they crowd, so that a fine mesh is grey and not black.
+
+    Parameters
+    ----------
+    edges : (e, 2) array of int
+    colours : (e, 3) array of uint8
+    spacing : (e,) array of float
+        Distance to the next edge beside each, in frame units.
+    """
+    opacity = 255 * strength * np.clip(spacing * frame.pixel / (CLEAR * frame.unit), 0, 1)
+    seen = opacity >= FAINTEST
+    shape = _lines(frame.place(points, EDGES), edges[seen])
+    shape.cell_data["colour"] = np.column_stack([colours[seen], opacity[seen]]).astype(np.uint8)
+    _add_lines(plotter, shape, width * frame.unit)
+
+
+def draw_lines(
+    plotter: pv.Plotter, frame: Frame, points: Floats, edges: Ints, colours: Bytes, width: float
+) -> None:
+    """Draw constrained edges, thick."""
+    shape = _lines(frame.place(points, LINES), edges)
+    shape.cell_data["colour"] = colours
+    _add_lines(plotter, shape, width * frame.unit)
+
+
+def draw_ellipses(plotter: pv.Plotter, frame: Frame, ellipses: Ellipses) -> None:
+    """Fill ellipses with a veil and draw their outlines."""
+    import pyvista as pv
+
+    outlines = ellipses.outlines
+    n = len(outlines)
+    corners = frame.place(outlines.reshape(-1, 2), ELLIPSES)
+    number = np.arange(n * SIDES).reshape(n, SIDES)
+    veil = pv.PolyData.from_regular_faces(corners, number)
+    plotter.add_mesh(veil, color=ELLIPSE, opacity=0.16, lighting=False)
+    sides = np.stack([number, np.roll(number, -1, axis=1)], axis=2).reshape(-1, 2)
+    shape = _lines(corners, sides)
+    shape.cell_data["colour"] = np.tile(rgb(ELLIPSE), (len(sides), 1))
+    _add_lines(plotter, shape, 1.6 * frame.unit)
+
+
+def _lines(points: NDArray[np.float32], edges: Ints) -> pv.PolyData:
+    import pyvista as pv
+
+    cells = np.column_stack([np.full(len(edges), 2), edges])
+    return pv.PolyData(points, lines=cells)
+
+
+def _add_lines(plotter: pv.Plotter, shape: pv.PolyData, width: float) -> None:
+    if shape.n_cells == 0:
+        return
+    plotter.add_mesh(
+        shape,
+        scalars="colour",
+        rgb=True,
+        line_width=max(THICKER * width, 1.0),
+        lighting=False,
+        copy_mesh=False,
+    )
+
+
+def edge_spacing(frame: Frame, points: Floats, triangles: Ints, sides: Ints, count: int) -> Floats:
+    """The lesser height of the triangles beside each edge, in frame units.
+
+    Parameters
+    ----------
+    sides : (m, 3) array of int
+        The edge opposite each corner of each triangle, out of so many.
+    """
+    p = frame.place(points)[:, :2].astype(float)[triangles]
+    along = np.roll(p, -2, axis=1) - np.roll(p, -1, axis=1)  # opposite each corner
+    doubled = np.abs(along[:, 0, 0] * along[:, 1, 1] - along[:, 0, 1] * along[:, 1, 0])
+    length = np.hypot(along[..., 0], along[..., 1])
+    height = doubled[:, None] / np.maximum(length, 1e-30)
+    out = np.full(count, np.inf)
+    np.minimum.at(out, sides.ravel(), height.ravel())
+    return out

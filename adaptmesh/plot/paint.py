@@ -1,0 +1,168 @@
+"""What the colours mean: triangles, points or edges to colours, with the scale or legend."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from metrics import ControlSpace
+from metrics.measure import edge_lengths, metric_areas
+
+from ..mesh import Mesh
+from ..report import numbered_edges, qualities
+from .colours import (
+    EDGE,
+    FACE,
+    FIELD,
+    INK,
+    NAMES,
+    PAPER,
+    REGIONS,
+    Bytes,
+    Scale,
+    field_scale,
+    length_scale,
+    quality_scale,
+    rgb,
+    size_scale,
+)
+from .frame import Bounds
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.integer]
+Entry = tuple[str, str]  # a name and its colour
+
+
+class View:
+    """The part of a mesh that is in sight.
+
+    Attributes
+    ----------
+    numbers : (k,) array of int
+        The triangles in sight.
+    triangles : (k, 3) array of int
+        Their vertices.
+    edges : (e, 2) array of int
+        Their edges, once.
+    sides : (k, 3) array of int
+        The edge opposite each of their corners.
+    constrained : (c,) array of int
+        The constrained edges in sight.
+    """
+
+    def __init__(self, mesh: Mesh, bounds: Bounds) -> None:
+        self.mesh = mesh
+        self.numbers = np.flatnonzero(_touches(mesh.points[mesh.triangles], bounds))
+        self.constrained = np.flatnonzero(_touches(mesh.points[mesh.edges], bounds))
+        self.triangles = mesh.triangles[self.numbers]
+        self.edges, self.sides = numbered_edges(self.triangles, len(mesh.points))
+
+
+def _touches(corners: Floats, bounds: Bounds) -> NDArray[np.bool_]:
+    """Which boxes around triangles or edges reach into the view."""
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    out: NDArray[np.bool_] = ((high >= bounds[:2]) & (low <= bounds[2:])).all(axis=1)
+    return out
+
+
+@dataclass(frozen=True)
+class Paint:
+    """Colours of everything in a view.
+
+    Attributes
+    ----------
+    faces : (k, 3) or (n, 3) array of uint8
+        One for each triangle in sight, or for each point of the mesh.
+    edges : (e, 3) array of uint8
+    edge_width, edge_strength : float
+        Pixels, and opacity where edges stand apart.
+    scale : Scale, optional
+    entries : sequence of (name, colour)
+        For the legend.
+    """
+
+    faces: Bytes
+    edges: Bytes
+    edge_width: float = 1.0
+    edge_strength: float = 0.4
+    scale: Scale | None = None
+    entries: Sequence[Entry] = ()
+
+
+def paint_plain(view: View) -> Paint:
+    """Pale triangles, dark edges."""
+    return Paint(_all(FACE, view.triangles), _all(EDGE, view.edges), edge_strength=0.9)
+
+
+def paint_regions(view: View) -> Paint:
+    """A colour for each region; those without a name are called by their number."""
+    used = np.unique(view.mesh.regions[view.numbers])
+    names = {number: name for name, number in view.mesh.region_names.items()}
+    table = {r: FACE if r == 0 else REGIONS[(r - 1) % len(REGIONS)] for r in used.tolist()}
+    entries = [
+        (names.get(r, f"region {r}" if r else "no region"), colour) for r, colour in table.items()
+    ]
+    colours = np.array([rgb(colour) for colour in table.values()])
+    faces = colours[np.searchsorted(used, view.mesh.regions[view.numbers])]
+    return Paint(faces, _all(EDGE, view.edges), edge_strength=0.6, entries=entries)
+
+
+def paint_quality(view: View, field: ControlSpace | None, cmap: str | None) -> Paint:
+    """The quality of each triangle, in the metric or without one."""
+    points = view.mesh.points
+    if field is None:
+        lengths = np.hypot(*np.moveaxis(points[view.edges[:, 1]] - points[view.edges[:, 0]], 1, 0))
+        areas, label = view.mesh.areas[view.numbers], "quality"
+    else:
+        lengths = edge_lengths(points, view.edges, field)
+        areas, label = metric_areas(points, view.triangles, field), "metric quality"
+    scale = quality_scale(label, cmap)
+    return Paint(scale(qualities(lengths[view.sides], areas)), _all(EDGE, view.edges), scale=scale)
+
+
+def paint_lengths(view: View, field: ControlSpace, cmap: str | None) -> Paint:
+    """The metric length of each edge."""
+    scale = length_scale(cmap)
+    lengths = edge_lengths(view.mesh.points, view.edges, field)
+    white = _all(PAPER, view.triangles)
+    return Paint(white, scale(lengths), edge_width=2.0, edge_strength=1.0, scale=scale)
+
+
+def paint_sizes(view: View, cmap: str | None) -> Paint:
+    """The side of the equilateral triangle of the same area."""
+    sizes = np.sqrt(4 / 3**0.5 * np.abs(view.mesh.areas[view.numbers]))
+    scale = size_scale(sizes, cmap)
+    return Paint(scale(sizes), _all(EDGE, view.edges), scale=scale)
+
+
+def paint_values(view: View, values: ArrayLike, cmap: str | None) -> Paint:
+    """Numbers at the points of the mesh or on its triangles."""
+    mesh, v = view.mesh, np.asarray(values, float)
+    n, m = len(mesh.points), len(mesh.triangles)
+    if v.shape not in ((n,), (m,)):
+        raise ValueError(f"show has shape {v.shape}: {n} numbers at the points are wanted, or {m}")
+    scale = field_scale(v, cmap or FIELD)
+    faces = scale(v) if v.shape == (n,) else scale(v[view.numbers])
+    return Paint(faces, _all(EDGE, view.edges), edge_strength=0.3, scale=scale)
+
+
+def paint_names(view: View) -> tuple[Bytes, list[Entry]]:
+    """Colours of the constrained edges in sight, and their names; without any, all are ink."""
+    tags = view.mesh.edge_tags[view.constrained]
+    used, which = np.unique(tags, return_inverse=True)
+    names = {tag: name for name, tag in view.mesh.names.items()}
+    table = {tag: INK if tag == 0 else NAMES[(tag - 1) % len(NAMES)] for tag in used.tolist()}
+    colours = np.array([rgb(colour) for colour in table.values()]).reshape(-1, 3)[which.ravel()]
+    if not used.any():
+        return colours, []
+    return colours, [
+        (names.get(tag, f"tag {tag}" if tag else "no name"), colour)
+        for tag, colour in table.items()
+    ]
+
+
+def _all(colour: str, items: Ints) -> Bytes:
+    return np.tile(rgb(colour), (len(items), 1))
