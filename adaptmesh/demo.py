@@ -73,19 +73,19 @@ def run(out: Path, say: Callable[[str], object] = print, coarsening: float = 1.0
 def iceland(coarsening: float = 1.0) -> Case:
     """Iceland and the sea around it, fine along the coast: a size in kilometres.
 
-    The coast as it is delivered crosses itself; shapely repairs it, and simplifies it to about a
-    third of the finest size, as a detail smaller than that cannot be seen by the mesh. It stays in
-    the mesh as the interface between the regions "land" and "sea".
+    The coast as it is delivered crosses itself. Shapely repairs it, and simplifies it to half of
+    the finest size: smaller capes and inlets than that would ask for smaller triangles. It stays
+    in the mesh as the interface between the regions "land" and "sea".
     """
     import shapely
     from scipy.spatial import cKDTree
 
-    finest, growth = 2.0 * coarsening, 0.2
+    finest, growth = 1.5 * coarsening, 0.2
     outline = json.loads(_data_file("iceland.geojson").read_text(encoding="utf-8"))
     coast = shapely.from_geojson(json.dumps(outline["features"][0]["geometry"]))
-    islands = shapely.get_parts(shapely.simplify(shapely.make_valid(coast), 0.35 * finest))
+    islands = shapely.get_parts(shapely.simplify(shapely.make_valid(coast), 0.5 * finest))
     land = shapely.multipolygons([island for island in islands if island.area > finest**2])
-    sea = shapely.difference(land.convex_hull.buffer(120.0), land)
+    sea = shapely.difference(shapely.Polygon(ellipse((0.0, 0.0), 400.0, 320.0, 72)), land)
 
     shore = shapely.get_coordinates(shapely.segmentize(land.boundary, 0.25 * finest))
     tree = cKDTree(shore)
@@ -99,7 +99,7 @@ def iceland(coarsening: float = 1.0) -> Case:
         title="Iceland: the size grows away from the coast",
         domain=domain_of_polygons([land, sea], ["land", "sea"]),
         field=size,
-        views={"": (-390.0, 390.0, -310.0, 310.0), "-westfjords": (-215.0, -95.0, 55.0, 150.0)},
+        views={"": (-410.0, 410.0, -330.0, 330.0), "-westfjords": (-215.0, -95.0, 55.0, 150.0)},
     )
 
 
@@ -126,8 +126,7 @@ def aerofoil(coarsening: float = 1.0) -> Case:
         along = spacing + growth * distance
         return packed_metric(normal, across, along)
 
-    angles = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
-    far_field = (0.5, 0.0) + farthest * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    far_field = ellipse((0.5, 0.0), farthest, farthest, 64)
     wall = wing.unit_spaced()
     n, k = len(far_field), len(wall)
     ring, loop = np.arange(n), n + np.arange(k)
@@ -146,6 +145,12 @@ def aerofoil(coarsening: float = 1.0) -> Case:
         field=metric,
         views={"": (-0.35, 1.35, -0.6, 0.6), "-nose": (-0.02, 0.06, -0.03, 0.03)},
     )
+
+
+def ellipse(centre: tuple[float, float], a: float, b: float, n: int) -> Floats:
+    """Points (n, 2) round an ellipse of half axes a and b."""
+    t = np.linspace(0.0, 2.0 * np.pi, n, endpoint=False)
+    return np.array(centre) + np.stack([a * np.cos(t), b * np.sin(t)], axis=1)
 
 
 def packed_metric(normal: Floats, across: Floats, along: Floats) -> Floats:

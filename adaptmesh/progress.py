@@ -48,19 +48,12 @@ class TerminalProgress:
 
     def _drawn(self) -> RichProgress:
         from rich.console import Console
-        from rich.progress import (
-            BarColumn,
-            Progress,
-            TaskProgressColumn,
-            TextColumn,
-            TimeElapsedColumn,
-        )
+        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
         bar = Progress(
             TextColumn("{task.description:<12}"),
             BarColumn(),
             TaskProgressColumn(),
-            TimeElapsedColumn(),
             console=Console(file=self._stream),
             transient=True,
         )

@@ -246,19 +246,11 @@ def test_a_full_disk_is_a_neat_error(run, square, monkeypatch):
 
 
 def test_as_a_module(tmp_path):
-    (tmp_path / "bad.geojson").write_text("{")
-    command = [
-        sys.executable,
-        "-m",
-        "adaptmesh",
-        "generate",
-        "bad.geojson",
-        "-s",
-        "1",
-        "-o",
-        "o.vtu",
-    ]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    domain, output = tmp_path / "bad.geojson", tmp_path / "out.vtu"
+    domain.write_text("{")
+    command = [sys.executable, "-m", "adaptmesh", "generate", domain, "--size", "1", "-o", output]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 1
-    assert done.stderr.startswith("error: bad.geojson")
+    assert done.stderr.startswith(f"error: {domain}")
     assert done.stdout == ""
+    assert not output.exists()
