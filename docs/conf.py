@@ -1,0 +1,37 @@
+"""Sphinx configuration. Build with: sphinx-build -W -b html docs docs/_build"""
+
+import adaptmesh
+
+project = "adaptmesh"
+author = "the adaptmesh authors"
+copyright = "the adaptmesh authors"
+version = release = adaptmesh.__version__
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.mathjax",
+    "sphinx.ext.napoleon",
+]
+exclude_patterns = ["_build"]
+templates_path = ["_templates"]
+
+html_theme = "furo"
+html_title = f"adaptmesh {release}"
+html_static_path = ["_static"]
+html_css_files = ["style.css"]
+
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+
+# Docstrings are numpydoc; a name in single backquotes is a link where it can be one.
+default_role = "py:obj"
+napoleon_google_docstring = False
+napoleon_use_ivar = True
+napoleon_use_rtype = False
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"
+autosummary_generate = True
+autosummary_ignore_module_all = False
+autosummary_imported_members = True
