@@ -2,9 +2,15 @@
 
 from .adapt import adapt
 from .domain import Domain
+from .domain_io import read_domain
 from .errors import AdaptmeshError, BudgetError, DomainError, FormatError, MetricError
 from .generate import generate, predict
+from .io import read, read_sol, write, write_sol
 from .mesh import Mesh
+from .plot import plot
+from .report import Report, measure
+from .triangulate import delaunay
+from .validate import Validity, validate
 
 __version__ = "0.1.0"
 
@@ -16,7 +22,18 @@ __all__ = [
     "FormatError",
     "Mesh",
     "MetricError",
+    "Report",
+    "Validity",
     "adapt",
+    "delaunay",
     "generate",
+    "measure",
+    "plot",
     "predict",
+    "read",
+    "read_domain",
+    "read_sol",
+    "validate",
+    "write",
+    "write_sol",
 ]
