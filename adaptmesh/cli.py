@@ -49,6 +49,7 @@ class Show(str, Enum):
     mesh = "mesh"
     quality = "quality"
     length = "length"
+    size = "size"
     region = "region"
 
 
@@ -204,13 +205,13 @@ def plot(
         bool, typer.Option("--ellipses", help="Draw the metric as unit ellipses.")
     ] = False,
 ) -> None:
-    """Draw a mesh: its triangles, quality, edge lengths or regions."""
+    """Draw a mesh: its triangles, quality, edge lengths, sizes or regions."""
     with _neat_errors():
         import adaptmesh as am
 
         wanted = size is not None or metric is not None
-        if ellipses and not wanted:
-            raise typer.BadParameter("the ellipses of which metric? Give --size or --metric")
+        if (ellipses or show is Show.length) and not wanted:
+            raise typer.BadParameter("in which metric? Give --size or --metric")
         _check_outputs(output)
         drawn = am.read(mesh)
         control = _control_space(size, metric, drawn) if wanted else None

@@ -25,6 +25,17 @@ Field = Callable[[Floats], Floats]
 
 
 @dataclass(frozen=True)
+class View:
+    """A picture of a mesh; the file is called after the case and the suffix."""
+
+    suffix: str
+    bounds: tuple[float, float, float, float]
+    """The window (x0, y0, x1, y1)."""
+    show: str
+    ellipses: bool = False
+
+
+@dataclass(frozen=True)
 class Case:
     """Something to mesh, and the views of it that are worth a picture."""
 
@@ -32,8 +43,7 @@ class Case:
     title: str
     domain: Domain
     field: Field
-    views: dict[str, tuple[float, float, float, float]]
-    """Suffix of each picture's file name and its window (x0, x1, y0, y1)."""
+    views: tuple[View, ...]
 
 
 def run(out: Path, say: Callable[[str], object] = print, coarsening: float = 1.0) -> list[Path]:
@@ -61,9 +71,17 @@ def run(out: Path, say: Callable[[str], object] = print, coarsening: float = 1.0
         path = out / f"{case.name}.vtu"
         am.write(path, mesh)
         written.append(path)
-        for view, bounds in case.views.items():
-            path = out / f"{case.name}{view}.png"
-            am.plot(mesh, show="region", path=path, bounds=bounds, title=case.title)
+        for view in case.views:
+            path = out / f"{case.name}{view.suffix}.png"
+            am.plot(
+                mesh,
+                case.field,
+                show=view.show,
+                ellipses=view.ellipses,
+                bounds=view.bounds,
+                title=case.title,
+                path=path,
+            )
             written.append(path)
     for path in written:
         say(f"wrote {path}")
@@ -99,7 +117,10 @@ def iceland(coarsening: float = 1.0) -> Case:
         title="Iceland: the size grows away from the coast",
         domain=domain_of_polygons([land, sea], ["land", "sea"]),
         field=size,
-        views={"": (-410.0, 410.0, -330.0, 330.0), "-westfjords": (-215.0, -95.0, 55.0, 150.0)},
+        views=(
+            View("", (-410.0, -330.0, 410.0, 330.0), show="region"),
+            View("-westfjords", (-215.0, 55.0, -95.0, 150.0), show="region"),
+        ),
     )
 
 
@@ -143,7 +164,10 @@ def aerofoil(coarsening: float = 1.0) -> Case:
         title="NACA 0012: thin triangles along the wall",
         domain=domain,
         field=metric,
-        views={"": (-0.35, 1.35, -0.6, 0.6), "-nose": (-0.02, 0.06, -0.03, 0.03)},
+        views=(
+            View("", (-0.35, -0.6, 1.35, 0.6), show="mesh"),
+            View("-nose", (-0.02, -0.03, 0.06, 0.03), show="length", ellipses=True),
+        ),
     )
 
 

@@ -8,8 +8,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from metrics.measure import edge_lengths, metric_areas
 from numpy.typing import NDArray
+
+from metrics.measure import edge_lengths, mesh_edges, metric_areas
 
 from .adapt import control_space_on
 from .validate import InvalidMeshError
@@ -172,10 +173,10 @@ def measure(mesh: Mesh, metric: Any) -> Report:
     """
     check_measurable(mesh)
     field = control_space_on(mesh, metric)
-    edges, edges_of_triangle = numbered_edges(mesh.triangles, len(mesh.points))
+    edges, sides = mesh_edges(mesh.triangles)
     lengths = edge_lengths(mesh.points, edges, field)
     areas = metric_areas(mesh.points, mesh.triangles, field)
-    quality = qualities(lengths[edges_of_triangle], areas)
+    quality = qualities(lengths[sides], areas)
     complexity = float(areas.sum())
     short, long = lengths < SHORTEST, lengths > LONGEST
     shortfall = 1 - ratio_to_unit(lengths)
@@ -208,30 +209,13 @@ def measure(mesh: Mesh, metric: Any) -> Report:
     )
 
 
-def numbered_edges(triangles: Ints, n_points: int) -> tuple[Ints, Ints]:
-    """The edges of triangles once, (e, 2), and the number of the edge opposite each corner, (m, 3).
-
-    The edges are sorted, each with its smaller vertex first.
-    """
-    t = triangles.astype(np.int64)
-    a, b = t[:, [1, 2, 0]], t[:, [2, 0, 1]]
-    keys = (np.minimum(a, b) * n_points + np.maximum(a, b)).ravel()
-    order = np.argsort(keys)
-    ordered = keys[order]
-    new = np.concatenate([[True], ordered[1:] != ordered[:-1]])
-    number = np.empty(len(keys), np.int64)
-    number[order] = np.cumsum(new) - 1
-    unique = ordered[new]
-    return np.stack([unique // n_points, unique % n_points], axis=1), number.reshape(-1, 3)
-
-
 def qualities(lengths: Floats, areas: Floats) -> Floats:
     """Quality of triangles from the metric lengths of their sides, (m, 3), and their metric areas.
 
     1 for the unit equilateral triangle. Where the metric jumps it may come out above 1, and is cut.
     """
     squares = (lengths**2).sum(axis=1)
-    return np.minimum(4 * 3**0.5 * areas / np.where(squares > 0, squares, np.inf), 1.0)
+    return np.minimum(4 * 3**0.5 * areas / squares, 1.0)
 
 
 def ratio_to_unit(lengths: Floats) -> Floats:

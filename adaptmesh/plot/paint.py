@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from metrics import ControlSpace
-from metrics.measure import edge_lengths, metric_areas
+from metrics.measure import edge_lengths, mesh_edges, qualities
 
 from ..mesh import Mesh
-from ..report import numbered_edges, qualities
 from .colours import (
     EDGE,
     FACE,
@@ -58,7 +57,7 @@ class View:
         self.numbers = np.flatnonzero(_touches(mesh.points[mesh.triangles], bounds))
         self.constrained = np.flatnonzero(_touches(mesh.points[mesh.edges], bounds))
         self.triangles = mesh.triangles[self.numbers]
-        self.edges, self.sides = numbered_edges(self.triangles, len(mesh.points))
+        self.edges, self.sides = mesh_edges(self.triangles)
 
 
 def _touches(corners: Floats, bounds: Bounds) -> NDArray[np.bool_]:
@@ -112,15 +111,10 @@ def paint_regions(view: View) -> Paint:
 
 def paint_quality(view: View, field: ControlSpace | None, cmap: str | None) -> Paint:
     """The quality of each triangle, in the metric or without one."""
-    points = view.mesh.points
-    if field is None:
-        lengths = np.hypot(*np.moveaxis(points[view.edges[:, 1]] - points[view.edges[:, 0]], 1, 0))
-        areas, label = view.mesh.areas[view.numbers], "quality"
-    else:
-        lengths = edge_lengths(points, view.edges, field)
-        areas, label = metric_areas(points, view.triangles, field), "metric quality"
+    label = "quality" if field is None else "metric quality"
+    quality = qualities(view.mesh.points, view.triangles, 1.0 if field is None else field)
     scale = quality_scale(label, cmap)
-    return Paint(scale(qualities(lengths[view.sides], areas)), _all(EDGE, view.edges), scale=scale)
+    return Paint(scale(quality), _all(EDGE, view.edges), scale=scale)
 
 
 def paint_lengths(view: View, field: ControlSpace, cmap: str | None) -> Paint:

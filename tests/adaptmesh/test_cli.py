@@ -158,7 +158,7 @@ def test_check_says_invalid_by_exit_code(run, tmp_path):
 
 
 def test_plot(run, mesh):
-    for number, show in enumerate(("mesh", "quality", "length", "region")):
+    for number, show in enumerate(("mesh", "quality", "length", "size", "region")):
         picture = f"{number}.png"
         result = run("plot", mesh, "--show", show, "--size", "0.2", "--ellipses", "-o", picture)
         assert result.exit_code == 0, result.output
@@ -223,6 +223,7 @@ def test_wrong_usage(run, square, mesh):
         run("generate", square, "-s", "1", "-o", "out.vtu", "--placement", "nowhere"), "is one of"
     )
     assert_usage(run("plot", mesh, "--ellipses", "-o", "out.png"), "which metric")
+    assert_usage(run("plot", mesh, "--show", "length", "-o", "out.png"), "which metric")
     assert_usage(run("knit"), "No such command")
 
 
