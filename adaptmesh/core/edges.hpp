@@ -44,15 +44,15 @@ inline EdgesToMeasure take_fresh_edges(MetricMesh& mesh) {
     EdgesToMeasure out;
     auto& triangles = mesh.topology.triangles;
     for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
-        if (!triangles[t].fresh) continue;
+        if (!(triangles[t].fresh & TO_MEASURE) || mesh.topology.is_dead(t)) continue;
         for (int slot = 0; slot < 3; ++slot) {
             const Index across = triangles[t].n[slot];
             // An edge is new only if both its triangles are; each edge is met twice.
             if (is_locked(across) || triangle_of(across) > t) continue;
-            if (triangles[triangle_of(across)].fresh) out.add(mesh, {t, slot});
+            if (triangles[triangle_of(across)].fresh & TO_MEASURE) out.add(mesh, {t, slot});
         }
     }
-    for (Triangle& t : triangles) t.fresh = 0;
+    for (Triangle& t : triangles) t.fresh &= ~TO_MEASURE;
     return out;
 }
 
@@ -71,10 +71,11 @@ class PointInserter {
 
     enum class Outcome { inserted, too_near, on_constraint, not_reached };
 
-    // Tries to put a point into the mesh, walking to it from a triangle near by. The new vertex is
-    // the last one.
-    Outcome insert(Point at, const Tensor& metric, Index from) {
-        const Location where = locate(mesh_.topology, [this](Index v) { return mesh_.at(v); }, at, from);
+    // Tries to put a point into the mesh, walking to it from the triangle `near`, which becomes the
+    // one where the walk ended. The new vertex is the last one.
+    Outcome insert(Point at, const Tensor& metric, Index& near) {
+        const Location where = locate(mesh_.topology, [this](Index v) { return mesh_.at(v); }, at, near);
+        near = where.triangle;
         if (where.where == Where::on_vertex) return Outcome::too_near;
         if (where.where == Where::outside) return Outcome::not_reached;
         const Place place = where.place();
@@ -138,12 +139,15 @@ Index insert_along_edges(MetricMesh& mesh, const EdgesToMeasure& edges, const Ed
         return length < options.long_edge ? Index(1) : Index(std::max(2.0, std::floor(length + 0.5)));
     };
     PointInserter inserter(mesh, options.spacing);
-    Index inserted = 0, tried = 0;
+    Index inserted = 0, tried = 0, edge = NONE, near = NONE;
     for (const FieldPoint& p : edges.sampler.cut(parts)) {
         if (++tried % 1024 == 0) poll();
         if (Index(mesh.vertices.size()) >= most_vertices) break;
-        inserted += inserter.insert(p.at, p.metric, edges.triangle[p.edge]) ==
-                    PointInserter::Outcome::inserted;
+        if (p.edge != edge) {  // along one edge, each point is near the one before
+            edge = p.edge;
+            near = edges.triangle[edge];
+        }
+        inserted += inserter.insert(p.at, p.metric, near) == PointInserter::Outcome::inserted;
     }
     return inserted;
 }

@@ -77,11 +77,13 @@ struct ActiveBand {
     double least_quality = 0.6;
 };
 
-inline std::vector<Index> active_vertices(const MetricMesh& mesh, const ActiveBand& band) {
+// The active vertices around which something has changed since the last call.
+inline std::vector<Index> take_active_vertices(MetricMesh& mesh, const ActiveBand& band) {
     std::vector<char> is_active(mesh.vertices.size(), 0);
     for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
-        if (mesh.topology.is_dead(t)) continue;
-        const Triangle& T = mesh.triangle(t);
+        Triangle& T = mesh.topology.triangles[t];
+        if (!(T.fresh & TO_IMPROVE) || mesh.topology.is_dead(t)) continue;
+        T.fresh &= ~TO_IMPROVE;
         bool active = mesh.quality(t) < band.least_quality;
         for (int slot = 0; slot < 3 && !active; ++slot) {
             const double length = mesh.length(T.v[next(slot)], T.v[prev(slot)]);
@@ -98,7 +100,7 @@ inline std::vector<Index> active_vertices(const MetricMesh& mesh, const ActiveBa
 
 template <typename Poll>
 Index search_active(MetricMesh& mesh, const ActiveBand& band, double step, int rounds, Poll& poll) {
-    const std::vector<Index> active = active_vertices(mesh, band);
+    const std::vector<Index> active = take_active_vertices(mesh, band);
     Smoother smoother(mesh);
     Index moved = 0;
     for (int round = 0; round < rounds; ++round) {

@@ -51,7 +51,7 @@ class MetricMesh {
     void move_vertex(Index v, const Vertex& moved, const std::vector<Place>& ball) {
         vertices[v] = moved;
         stale.push_back(v);
-        for (Place p : ball) topology.triangles[p.triangle].fresh = 1;
+        for (Place p : ball) topology.triangles[p.triangle].fresh = CHANGED;
     }
 
     const Point& at(Index v) const { return vertices[v].at; }

@@ -32,10 +32,8 @@ struct BallCost {
 
 class Smoother {
   public:
-    explicit Smoother(MetricMesh& mesh) : mesh_(mesh), logs_(mesh.vertices.size()) {
-        for (std::size_t v = 0; v < logs_.size(); ++v)
-            logs_[v] = metrics::log_tensor(mesh.vertices[v].metric);
-    }
+    explicit Smoother(MetricMesh& mesh)
+        : mesh_(mesh), logs_(mesh.vertices.size(), Tensor{NAN, NAN, NAN}) {}
 
     // Moves a free vertex towards the mean of the apexes that would make the triangles of its ball
     // equilateral, as far as the cost of the ball falls; returns whether it moved.
@@ -92,7 +90,7 @@ class Smoother {
         }
         sides_.push_back(sides_.front());
         start_ = mesh_.vertices[v].at;
-        start_log_ = logs_[v];
+        start_log_ = log_of(v);
         return true;
     }
 
@@ -145,7 +143,7 @@ class Smoother {
     }
 
     // P1 interpolation of log M in the ball as it was before the vertex moved; false outside it.
-    bool log_metric(Point p, Tensor& out) const {
+    bool log_metric(Point p, Tensor& out) {
         for (std::size_t i = 0; i + 1 < sides_.size(); ++i) {
             const Point a = mesh_.at(sides_[i]), b = mesh_.at(sides_[i + 1]);
             const double ax = a.x - start_.x, ay = a.y - start_.y;
@@ -154,10 +152,16 @@ class Smoother {
             const double area = ax * by - ay * bx;
             const double wa = (px * by - py * bx) / area, wb = (ax * py - ay * px) / area;
             if (!(wa >= 0 && wb >= 0 && wa + wb <= 1)) continue;
-            out = (1 - wa - wb) * start_log_ + wa * logs_[sides_[i]] + wb * logs_[sides_[i + 1]];
+            out = (1 - wa - wb) * start_log_ + wa * log_of(sides_[i]) + wb * log_of(sides_[i + 1]);
             return true;
         }
         return false;
+    }
+
+    // Logarithms are taken when first asked for, and kept.
+    const Tensor& log_of(Index v) {
+        if (std::isnan(logs_[v].a)) logs_[v] = metrics::log_tensor(mesh_.vertices[v].metric);
+        return logs_[v];
     }
 
     // The vector of metric length one that the frame of the metric turns (c, s) into: with

@@ -58,11 +58,14 @@ constexpr Index unlocked(Index code) {
 // 2^28 triangles: what an edge code of 31 bits can number.
 constexpr Index MAX_TRIANGLES = Index(1) << 28;
 
+// Every change of a triangle sets all bits of its `fresh`; who has looked at it clears its own.
+enum Fresh : std::uint32_t { TO_MEASURE = 1, TO_IMPROVE = 2, CHANGED = 3 };
+
 struct Triangle {
     Index v[3];
     Index n[3];
-    std::uint32_t stamp : 31;  // visit mark of searches, see Triangulation::new_stamp
-    std::uint32_t fresh : 1;   // changed since the mark was last cleared
+    std::uint32_t stamp : 30;  // visit mark of searches, see Triangulation::new_stamp
+    std::uint32_t fresh : 2;   // who has not yet seen its last change, see Fresh
     Index label;               // region, or a mark of the algorithm at work
 
     int slot_of_vertex(Index vertex) const { return v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2; }
@@ -95,7 +98,7 @@ class Triangulation {
     }
 
     Index add_triangle(Index a, Index b, Index c) {
-        triangles.push_back({{a, b, c}, {NONE, NONE, NONE}, 0, 1, 0});
+        triangles.push_back({{a, b, c}, {NONE, NONE, NONE}, 0, CHANGED, 0});
         const Index k = triangle_count() - 1;
         for (Index vertex : {a, b, c}) set_triangle_at(vertex, k);
         return k;
@@ -138,7 +141,7 @@ class Triangulation {
 
         T.v[0] = a, T.v[1] = b, T.v[2] = d;
         U.v[0] = d, U.v[1] = c, U.v[2] = a;
-        T.fresh = U.fresh = 1;
+        T.fresh = U.fresh = CHANGED;
         link(t, 0, bd);
         link(t, 2, ab);
         link(u, 0, ca);
@@ -163,7 +166,7 @@ class Triangulation {
         const Index t2 = add_triangle(p, a, b);
         Triangle& T = triangles[t];
         T.v[0] = p;
-        T.fresh = 1;
+        T.fresh = CHANGED;
         triangles[t1].label = triangles[t2].label = old.label;
         link(t1, 0, old.n[1]);
         link(t2, 0, old.n[2]);
@@ -195,7 +198,7 @@ class Triangulation {
         Triangle& T = triangles[t];
         T.v[0] = a, T.v[1] = b, T.v[2] = p;
         T.n[0] = NONE;
-        T.fresh = 1;
+        T.fresh = CHANGED;
         triangles[t2].label = old.label;
         link(t, 2, old.n[prev(e)]);
         link(t2, 1, old.n[next(e)]);
@@ -210,7 +213,7 @@ class Triangulation {
         const Index u2 = add_triangle(d, p, b);
         Triangle& U = triangles[u];
         U.v[0] = d, U.v[1] = c, U.v[2] = p;
-        U.fresh = 1;
+        U.fresh = CHANGED;
         triangles[u2].label = far.label;
         link(u, 2, far.n[prev(f)]);
         link(u2, 1, far.n[next(f)]);
@@ -236,7 +239,7 @@ class Triangulation {
             const bool is_next = T.v[next(i)] == to;
             if (!is_next && T.v[prev(i)] != to) {
                 T.v[i] = to;
-                T.fresh = 1;
+                T.fresh = CHANGED;
                 continue;
             }
             const Index opposite_from = T.n[i];
@@ -351,7 +354,7 @@ class Triangulation {
 
     // A visit mark no triangle bears.
     std::uint32_t new_stamp() {
-        if (++stamp_ == std::uint32_t(1) << 31) {  // wrapped
+        if (++stamp_ == std::uint32_t(1) << 30) {  // wrapped
             for (Triangle& t : triangles) t.stamp = 0;
             stamp_ = 1;
         }
