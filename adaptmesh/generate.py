@@ -45,8 +45,11 @@ class Optimisation:
     ----------
     smoothings : int
         Passes of smoothing over all vertices.
-    active_rounds : int
-        Rounds of collapse, split, swap and search where edges are not yet unit.
+    wide_rounds, narrow_rounds : int
+        Rounds of collapse, split, swap and search where edges are not nearly, and then where they
+        are hardly unit.
+    wide, narrow : (shortest, longest, least quality)
+        What these rounds leave alone: vertices that touch only such edges and triangles.
     step : float
         First step of the search, in metric length.
     swap_below : float
@@ -54,7 +57,10 @@ class Optimisation:
     """
 
     smoothings: int = 2
-    active_rounds: int = 4
+    wide_rounds: int = 2
+    narrow_rounds: int = 4
+    wide: tuple[float, float, float] = (0.8, 1.25, 0.6)
+    narrow: tuple[float, float, float] = (0.74, 1.36, 0.5)
     step: float = 0.12
     swap_below: float = 0.5
 
@@ -164,7 +170,7 @@ def place_along_edges(
     """
     while True:
         before = mesher.vertex_count
-        edges = measure_fresh_edges(mesher, field)
+        edges = measure_fresh_edges(mesher, field, options.long_edge)
         mesher.insert_along_edges(edges, options.long_edge, options.spacing, max_vertices)
         if mesher.vertex_count == before:
             return
@@ -182,9 +188,11 @@ def refresh(mesher: _core.Mesher, field: ControlSpace) -> None:
     mesher.set_stale_metrics(field(mesher.stale_points()))
 
 
-def measure_fresh_edges(mesher: _core.Mesher, field: ControlSpace) -> _core.EdgesToMeasure:
+def measure_fresh_edges(
+    mesher: _core.Mesher, field: ControlSpace, uncut_below: float
+) -> _core.EdgesToMeasure:
     """Measure the edges that have changed, and let the mesher know where its lengths are off."""
-    edges = mesher.fresh_edges()
+    edges = mesher.fresh_edges(uncut_below)
     measure_edges(edges.sampler, field)
     mesher.correct_lengths(edges)
     return edges
@@ -194,21 +202,23 @@ def optimise(
     mesher: _core.Mesher, field: ControlSpace, options: Optimisation, report: Progress
 ) -> None:
     """Smooth and swap everywhere, then work on what is not yet unit."""
-    steps = options.smoothings + options.active_rounds
+    bands = [options.wide] * options.wide_rounds + [options.narrow] * options.narrow_rounds
+    steps = options.smoothings + len(bands)
     mesher.swap()
     for k in range(options.smoothings):
         report("smoothing", 0.7 + 0.3 * k / steps)
         mesher.smooth()
         refresh(mesher, field)
         mesher.swap()
-    for k in range(options.active_rounds):
+    for k, band in enumerate(bands):
         report("improving", 0.7 + 0.3 * (options.smoothings + k) / steps)
-        measure_fresh_edges(mesher, field)
-        mesher.collapse_short_edges()
-        mesher.split_long_edges()
+        measure_fresh_edges(mesher, field, uncut_below=np.inf)
+        changes = mesher.collapse_short_edges() + mesher.split_long_edges()
         refresh(mesher, field)
         mesher.swap()
-        mesher.search_active(options.step, 2)
+        changes += mesher.search_active(*band, options.step)
+        if not changes:
+            break
         refresh(mesher, field)
         mesher.swap()
     mesher.swap_worst(options.swap_below)

@@ -97,9 +97,9 @@ class Mesher {
 
     std::size_t vertex_count() const { return mesh_.vertices.size(); }
 
-    EdgesToMeasure fresh_edges() {
+    EdgesToMeasure fresh_edges(double uncut_below) {
         nb::gil_scoped_release release;
-        return take_fresh_edges(mesh_);
+        return take_fresh_edges(mesh_, uncut_below);
     }
 
     Index insert_along_edges(const EdgesToMeasure& edges, double long_edge, double spacing,
@@ -133,9 +133,9 @@ class Mesher {
         return adaptmesh::split_long_edges(mesh_, {}, poll_);
     }
 
-    Index search_active(double step, int rounds) {
+    Index search_active(double shortest, double longest, double least_quality, double step) {
         nb::gil_scoped_release release;
-        return adaptmesh::search_active(mesh_, {}, step, rounds, poll_);
+        return adaptmesh::search_active(mesh_, {shortest, longest, least_quality}, step, poll_);
     }
 
     void correct_lengths(const EdgesToMeasure& edges) {
@@ -232,7 +232,7 @@ void bind_mesher(nb::module_& m) {
              nb::arg("points"), nb::arg("tensors"), nb::arg("held_by"), nb::arg("segments"),
              nb::arg("holes"), nb::arg("seeds"), nb::arg("nesting"))
         .def_prop_ro("vertex_count", &Mesher::vertex_count)
-        .def("fresh_edges", &Mesher::fresh_edges)
+        .def("fresh_edges", &Mesher::fresh_edges, nb::arg("uncut_below"))
         .def("insert_along_edges", &Mesher::insert_along_edges, nb::arg("edges"),
              nb::arg("long_edge"), nb::arg("spacing"), nb::arg("most_vertices"))
         .def("swap", &Mesher::swap)
@@ -240,7 +240,8 @@ void bind_mesher(nb::module_& m) {
         .def("smooth", &Mesher::smooth)
         .def("collapse_short_edges", &Mesher::collapse_short_edges)
         .def("split_long_edges", &Mesher::split_long_edges)
-        .def("search_active", &Mesher::search_active, nb::arg("step"), nb::arg("rounds"))
+        .def("search_active", &Mesher::search_active, nb::arg("shortest"), nb::arg("longest"),
+             nb::arg("least_quality"), nb::arg("step"))
         .def("correct_lengths", &Mesher::correct_lengths, nb::arg("edges"))
         .def("compact", &Mesher::compact)
         .def("points", &Mesher::points)

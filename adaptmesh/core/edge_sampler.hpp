@@ -40,10 +40,14 @@ class EdgeSampler {
     static constexpr double SHORTEST_CHORD = 0.05;
     static constexpr int DEEPEST = 40;
 
+    // Edges shorter than `uncut_below` will not be cut: only their lengths are kept.
+    explicit EdgeSampler(double uncut_below = 0) : uncut_below_(uncut_below) {}
+
     void add(Point a, const Tensor& metric_a, Point b, const Tensor& metric_b) {
         const Index edge = Index(edges_.size());
         edges_.push_back({a, {b.x - a.x, b.y - a.y}});
         chords_.push_back({edge, 0, 0.0, 1.0, metric_a, metric_b});
+        lengths_.push_back(0.0);
     }
 
     Index edge_count() const { return Index(edges_.size()); }
@@ -74,6 +78,8 @@ class EdgeSampler {
             const bool agree = std::abs(whole - halves) <= AGREEMENT * halves;
             if ((agree && halves <= LONGEST_CHORD) || halves <= SHORTEST_CHORD ||
                 c.depth >= DEEPEST) {
+                lengths_[c.edge] += halves;
+                if (c.depth == 0 && halves < uncut_below_) continue;
                 pieces_.push_back(left);
                 pieces_.push_back(right);
             } else {
@@ -128,11 +134,7 @@ class EdgeSampler {
             return p.edge != q.edge ? p.edge < q.edge : p.t0 < q.t0;
         });
         first_.assign(edges_.size() + 1, 0);
-        lengths_.assign(edges_.size(), 0.0);
-        for (const Chord& p : pieces_) {
-            ++first_[p.edge + 1];
-            lengths_[p.edge] += length(p);
-        }
+        for (const Chord& p : pieces_) ++first_[p.edge + 1];
         for (std::size_t e = 0; e < edges_.size(); ++e) first_[e + 1] += first_[e];
     }
 
@@ -160,6 +162,7 @@ class EdgeSampler {
         return {point(p.edge, p.t0 + s * (p.t1 - p.t0)), metrics::log_mean(p.m0, p.m1, s), p.edge};
     }
 
+    double uncut_below_;
     std::vector<Edge> edges_;
     std::vector<Chord> chords_;  // asked about
     std::vector<Chord> pieces_;  // trusted

@@ -39,9 +39,10 @@ struct EdgesToMeasure {
     }
 };
 
-// The interior edges that appeared since the last call.
-inline EdgesToMeasure take_fresh_edges(MetricMesh& mesh) {
-    EdgesToMeasure out;
+// The interior edges that appeared since the last call; those shorter than `uncut_below` will only
+// be measured.
+inline EdgesToMeasure take_fresh_edges(MetricMesh& mesh, double uncut_below) {
+    EdgesToMeasure out{EdgeSampler(uncut_below), {}, {}, {}};
     auto& triangles = mesh.topology.triangles;
     for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
         if (!(triangles[t].fresh & TO_MEASURE) || mesh.topology.is_dead(t)) continue;

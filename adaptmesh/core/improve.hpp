@@ -99,15 +99,13 @@ inline std::vector<Index> take_active_vertices(MetricMesh& mesh, const ActiveBan
 }
 
 template <typename Poll>
-Index search_active(MetricMesh& mesh, const ActiveBand& band, double step, int rounds, Poll& poll) {
+Index search_active(MetricMesh& mesh, const ActiveBand& band, double step, Poll& poll) {
     const std::vector<Index> active = take_active_vertices(mesh, band);
     Smoother smoother(mesh);
     Index moved = 0;
-    for (int round = 0; round < rounds; ++round) {
-        for (std::size_t i = 0; i < active.size(); ++i) {
-            if (i % 1024 == 0) poll();
-            moved += smoother.search_around(active[i], step / (1 + round));
-        }
+    for (std::size_t i = 0; i < active.size(); ++i) {
+        if (i % 1024 == 0) poll();
+        moved += smoother.search_around(active[i], step);
     }
     return moved;
 }
