@@ -70,10 +70,12 @@ class Domain:
         self.region_names, self.seeds, self.seed_regions = _checked_regions(regions or {})
         self.names, self.segment_tags = _checked_names(names or {}, len(self.segments))
 
-        triangles, labels = self._triangulate()
+        triangles, labels, boundary_segments = self._triangulate()
         #: Constrained Delaunay triangles of the points alone, (m, 3), and their regions, (m,).
         self.triangles: Ints = _read_only(triangles)
         self.triangle_regions: Ints = _read_only(self.region_of_label(labels))
+        #: The segments that have the outside on one side, (b,).
+        self.boundary: Ints = _read_only(boundary_segments)
 
     @classmethod
     def polygon(
@@ -139,14 +141,14 @@ class Domain:
         out: Ints = np.concatenate([[0], self.seed_regions]).astype(np.int32)[labels]
         return out
 
-    def _triangulate(self) -> tuple[Ints, Ints]:
+    def _triangulate(self) -> tuple[Ints, Ints, Ints]:
         try:
-            triangles, labels, *_ = _core.triangulate(
+            triangles, labels, _, segment, is_boundary = _core.triangulate(
                 self.points, self.segments, self.holes, self.seeds, self.nesting
             )
         except _core.Fault as fault:
             raise DomainError(self._explain(*fault.args)) from None
-        return triangles, labels
+        return triangles, labels, np.unique(segment[is_boundary])
 
     def _explain(self, kind: str, i: int, j: int, x: float, y: float) -> str:
         """What is wrong, where, and what to do, from a fault that the core found."""

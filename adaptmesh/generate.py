@@ -123,13 +123,14 @@ def generate(
 def predict(domain: Domain, metric: Any) -> int:
     """The number of vertices that a mesh of the domain will have, before it is made.
 
-    (2/sqrt 3) C + B/2 + 1, with C the complexity, the integral of sqrt(det M), and B the metric
-    length of the boundary, which a hexagonal lattice of unit edges would have. To about 5 %; fields
-    with features far below their surroundings may hide from it.
+    (2/sqrt 3) C + B/2 + 1, what a hexagonal lattice of unit edges would have: C is the complexity,
+    the integral of sqrt(det M), and B the metric length of the boundary. To about 5 %, except for
+    meshes of a few triangles; features far below their surroundings may hide from it.
     """
     field = metrics.as_control_space(metric)
     complexity = metrics.complexity(domain.points, domain.triangles, field).value
-    return int(np.ceil(2 / np.sqrt(3) * complexity)) + len(domain.points)
+    boundary = metrics.edge_lengths(domain.points, domain.segments[domain.boundary], field).sum()
+    return max(len(domain.points), int(2 / np.sqrt(3) * complexity + boundary / 2) + 1)
 
 
 def _check_budget(domain: Domain, field: ControlSpace, max_vertices: int) -> int:
@@ -180,7 +181,7 @@ def place_along_edges(
                 f"(about {expected:,} vertices were predicted): ask for larger sizes, or allow more"
             )
         refresh(mesher, field)
-        report("placing points", 0.05 + 0.65 * min(1.0, mesher.vertex_count / max(expected, 1)))
+        report("placing points", min(0.7, 0.05 + 0.65 * mesher.vertex_count / max(expected, 1)))
 
 
 def refresh(mesher: _core.Mesher, field: ControlSpace) -> None:

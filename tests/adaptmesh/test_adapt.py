@@ -1,0 +1,113 @@
+"""Remeshing for a nodal metric: the domain, its names and its regions stay."""
+
+import adaptmesh as am
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def plate():
+    points = [(0, 0), (4, 0), (4, 2), (0, 2), (2, 0), (2, 2), (0.5, 0.5), (1, 0.5), (1, 1), (0.5, 1)]
+    segments = [(0, 4), (4, 1), (1, 2), (2, 5), (5, 3), (3, 0), (4, 5)]
+    segments += [(6, 7), (7, 8), (8, 9), (9, 6)]
+    return am.Domain(
+        points,
+        segments,
+        holes=[(0.75, 0.75)],
+        regions={"left": (0.1, 0.1), "right": (3, 1)},
+        names={"bottom": [0, 1], "interface": [6], "hole": [7, 8, 9, 10]},
+    )
+
+
+def sizes(x):
+    return 0.02 + 0.1 * abs(x[:, 0] - 1.5)
+
+
+def lengths(mesh):
+    out = {}
+    for name in mesh.names:
+        p = mesh.points[mesh.edges_named(name)]
+        out[name] = np.linalg.norm(p[:, 1] - p[:, 0], axis=1).sum()
+    return out
+
+
+def areas(mesh):
+    return {name: mesh.areas[mesh.triangles_in(name)].sum() for name in mesh.region_names}
+
+
+def test_adapt_to_nodal_sizes(plate):
+    mesh = am.generate(plate, 0.1)
+    for _ in range(3):
+        mesh = am.adapt(mesh, sizes(mesh.points))
+    assert am.validate(mesh), am.validate(mesh)
+    assert am.measure(mesh, sizes).unit_fraction > 0.99
+    assert lengths(mesh) == pytest.approx({"bottom": 4, "interface": 2, "hole": 2})
+    assert areas(mesh) == pytest.approx({"left": 3.75, "right": 4})
+    assert mesh.domain is plate
+
+
+def test_adapt_takes_tensors_and_callables(plate):
+    mesh = am.generate(plate, 0.1)
+    h = sizes(mesh.points)
+    packed = np.stack([h**-2, 0 * h, h**-2], axis=1)
+    one, two = am.adapt(mesh, h), am.adapt(mesh, packed)
+    assert np.allclose(one.points, two.points)
+    assert len(am.adapt(mesh, sizes).points) == pytest.approx(len(one.points), rel=0.05)
+    assert len(am.adapt(mesh, 0.3).points) < len(mesh.points)
+
+
+def test_the_domain_is_found_again_from_the_mesh_alone(plate):
+    mesh = am.generate(plate, 0.1)
+    bare = am.Mesh(
+        mesh.points,
+        mesh.triangles,
+        regions=mesh.regions,
+        edges=mesh.edges,
+        edge_tags=mesh.edge_tags,
+        names=mesh.names,
+        region_names=mesh.region_names,
+    )
+    domain = am.Domain.of_mesh(bare)
+    assert domain.area == pytest.approx(plate.area, abs=1e-12)
+    assert len(domain.points) == len(plate.points)
+    assert {tuple(p) for p in domain.points} == {tuple(p) for p in plate.points}
+    again = am.adapt(bare, sizes(bare.points))
+    assert lengths(again) == pytest.approx({"bottom": 4, "interface": 2, "hole": 2})
+    assert areas(again) == pytest.approx({"left": 3.75, "right": 4})
+
+
+def test_a_mesh_without_constrained_edges_is_bounded_by_its_border():
+    square = am.generate(am.Domain.rectangle(0, 0, 1, 1), 0.2)
+    domain = am.Domain.of_mesh(am.Mesh(square.points, square.triangles))
+    assert len(domain.points) == 4
+    assert domain.area == pytest.approx(1)
+
+
+def test_a_circle_of_many_short_edges_stays_a_circle():
+    angle = np.linspace(0, 2 * np.pi, 2000, endpoint=False)
+    disc = am.Domain.polygon(np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    mesh = am.generate(disc, 0.2)
+    assert len(am.Domain.of_mesh(mesh).points) == 2000
+
+
+def test_nested_holes_and_islands_are_found_again():
+    def ring(k):
+        return [(k, k), (9 - k, k), (9 - k, 9 - k), (k, 9 - k)]
+
+    domain = am.Domain.polygon(ring(0), [ring(1), ring(2), ring(3)])
+    mesh = am.generate(domain, 0.5)
+    again = am.Domain.of_mesh(am.Mesh(mesh.points, mesh.triangles))
+    assert again.area == pytest.approx(domain.area)
+
+
+def test_wrong_number_of_values(plate):
+    mesh = am.generate(plate, 0.3)
+    with pytest.raises(am.MetricError):
+        am.adapt(mesh, np.ones(len(mesh.points) + 1))
+    with pytest.raises(am.MetricError):
+        am.adapt(mesh, np.full(len(mesh.points), -1.0))
+
+
+def test_an_empty_mesh_covers_no_domain():
+    with pytest.raises(am.DomainError, match="no triangles"):
+        am.Domain.of_mesh(am.Mesh(np.empty((0, 2)), np.empty((0, 3))))
