@@ -187,8 +187,8 @@ def complexity(
     once = 3 * len(_RADON_W) * len(corners)
     if once > max_evaluations:
         blocks = (corners[k : k + _BLOCK] for k in range(0, len(corners), _BLOCK))
-        totals = [_Leaves.of(space, block).totals() for block in blocks]
-        return Complexity(*np.sum(totals, axis=0).tolist(), once)
+        value, error = np.sum([_Leaves.of(space, block).totals() for block in blocks], axis=0)
+        return Complexity(float(value), float(error), once)
     return _adapted(space, _at_least(corners, 256), rtol, max_evaluations)
 
 
