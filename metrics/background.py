@@ -60,11 +60,21 @@ class Background(ControlSpace):
         self.logs = _core.log(tensors)
         for array in (self.points, self.triangles, self.logs):
             array.flags.writeable = False
+        self._build()
+
+    def _build(self) -> None:
         try:
             self._search = _core.Background(self.points, self.logs, self.triangles)
         except ValueError as error:
             raise MetricError(f"the triangles are not a mesh: {error}") from error
         self._border = _BORDER * self._search.diagonal
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name != "_search"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        self._build()
 
     @classmethod
     def on(

@@ -1,5 +1,7 @@
 """Metrics carried by meshes: exact for affine fields, found on any mesh, the same in any thread."""
 
+import copy
+import pickle
 from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
@@ -249,6 +251,14 @@ def test_its_arrays_are_its_own():
     for array in (field.points, field.triangles, field.logs):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0
+
+
+def test_it_can_be_copied_and_pickled():
+    field = Background(SQUARE, TWO, [0.1, 0.2, 0.3, 0.4], outside="error")
+    for other in (copy.deepcopy(field), pickle.loads(pickle.dumps(field))):
+        np.testing.assert_array_equal(other(SQUARE / 3), field(SQUARE / 3))
+        with pytest.raises(MetricError, match="outside"):
+            other([[5.0, 5.0]])
 
 
 def test_on_a_mesh_like_object():
