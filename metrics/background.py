@@ -60,12 +60,21 @@ class Background(ControlSpace):
         self.logs = _core.log(tensors)
         for array in (self.points, self.triangles, self.logs):
             array.flags.writeable = False
+        self._build()
+
+    def _build(self) -> None:
         try:
             self._search = _core.Background(self.points, self.logs, self.triangles)
         except ValueError as error:
             raise MetricError(f"the triangles are not a mesh: {error}") from error
-        extent = np.ptp(self.points[self.triangles.ravel()], axis=0)
-        self._border = _BORDER * float(np.hypot(*extent))
+        self._border = _BORDER * self._search.diagonal
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name != "_search"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        self._build()
 
     @classmethod
     def on(
@@ -145,15 +154,11 @@ def _as_hints(hints: ArrayLike, count: int) -> Ints:
 def _check_areas(points: Floats, triangles: Ints) -> None:
     if len(triangles) == 0:
         raise MetricError("a background mesh needs at least one triangle")
-    p, q, r = (points[triangles[:, k]] for k in range(3))
-    doubled = (q[:, 0] - p[:, 0]) * (r[:, 1] - p[:, 1]) - (q[:, 1] - p[:, 1]) * (r[:, 0] - p[:, 0])
-    if (doubled > 0).all():
+    i = _core.check_triangles(points, triangles)
+    if i < 0:
         return
-    i = int(np.argmin(doubled > 0))
-    corners = ", ".join(f"({x:.6g}, {y:.6g})" for x, y in (p[i], q[i], r[i]))
-    flaw = (
-        "has no area"
-        if doubled[i] == 0
-        else "is clockwise; reverse it: triangles[i] = triangles[i, ::-1]"
-    )
+    (x0, y0), (x1, y1), (x2, y2) = points[triangles[i]].tolist()
+    flat = (x1 - x0) * (y2 - y0) == (y1 - y0) * (x2 - x0)
+    flaw = "has no area" if flat else "is clockwise; reverse it: triangles[i] = triangles[i, ::-1]"
+    corners = f"({x0:.6g}, {y0:.6g}), ({x1:.6g}, {y1:.6g}), ({x2:.6g}, {y2:.6g})"
     raise MetricError(f"triangle {i} with the corners {corners} {flaw}")

@@ -63,6 +63,12 @@ class Background {
     Index triangle_count() const { return Index(triangles_.size()); }
     Index neighbour(Index triangle, int edge) const { return triangles_[triangle].n[edge]; }
 
+    // Of the box around the mesh.
+    double diagonal() const {
+        const Box box = triangle_tree_.bounds();
+        return std::hypot(box.x1 - box.x0, box.y1 - box.y0);
+    }
+
     // The metric at (x, y). `triangle` is where to start from (-1, or any number that is not a
     // triangle, when nothing is known), and becomes the triangle of the point.
     Tensor at(double x, double y, Index& triangle) const {

@@ -101,6 +101,20 @@ auto check_matrices(Matrices matrices, double asymmetry) {
         });
 }
 
+// The first triangle that is not counter-clockwise with some area, -1 if there is none.
+std::int64_t check_triangles(Points points, Triangles triangles) {
+    nb::gil_scoped_release release;
+    const double* p = points.data();
+    for (std::size_t t = 0; t < triangles.shape(0); ++t) {
+        const Index* v = triangles.data() + 3 * t;
+        const double *a = p + 2 * v[0], *b = p + 2 * v[1], *c = p + 2 * v[2];
+        if (!((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0)) {
+            return std::int64_t(t);
+        }
+    }
+    return -1;
+}
+
 template <typename Function>
 nb::object map_tensors(Tensors tensors, Function function) {
     Result<double> out(tensors.shape(0), 3);
@@ -201,10 +215,11 @@ NB_MODULE(_core, m) {
     m.doc() =
         "The compiled core of metrics. Arrays are contiguous, (n, 3) tensors are packed "
         "(m11, m12, m22). The check functions return (packed copy, index of the first item that is "
-        "not a metric or -1).";
+        "not a metric or -1), or that index alone.";
     m.def("check_sizes", &check_sizes, "sizes"_a);
     m.def("check_tensors", &check_tensors, "tensors"_a);
     m.def("check_matrices", &check_matrices, "matrices"_a, "asymmetry"_a);
+    m.def("check_triangles", &check_triangles, "points"_a, "triangles"_a);
 
     m.def("log", [](Tensors t) { return map_tensors(t, metrics::log_tensor); }, "tensors"_a);
     m.def("exp", [](Tensors t) { return map_tensors(t, metrics::exp_tensor); }, "tensors"_a);
@@ -230,6 +245,7 @@ NB_MODULE(_core, m) {
 
     nb::class_<metrics::Background>(m, "Background")
         .def("__init__", &construct, "points"_a, "logs"_a, "triangles"_a)
+        .def_prop_ro("diagonal", &metrics::Background::diagonal)
         .def("evaluate", &evaluate, "points"_a, "hints"_a = nb::none(),
              "Metrics (n, 3), triangles (n,), distances from the mesh (n,).");
 }

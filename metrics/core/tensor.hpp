@@ -188,24 +188,29 @@ inline double length(Tensor s, Tensor t, double dx, double dy) {
     return length(s, sqrt_det(s), t, sqrt_det(t), dx, dy);
 }
 
-// The largest ellipse inside both unit ellipses that simultaneous reduction gives: in the basis
-// where s is the identity and t diagonal, the larger of each pair of eigenvalues.
+// The ellipse inside both unit ellipses that simultaneous reduction gives: in the basis where s is
+// the identity and t diagonal, the larger of each pair of eigenvalues.
 //
 // With s = L L' and N = L^-1 t L^-T = low vv' + high ww': s itself if high <= 1, t if low >= 1, and
 // otherwise L (I + (high - 1) ww') L' = s + (high - 1) (Lw)(Lw)', without forming the inverse.
 inline Tensor intersect(Tensor s, Tensor t) {
-    const double l11 = std::sqrt(s.a), l21 = s.b / l11, l22 = sqrt_det(s) / l11;
-    const double k = l21 / l11;
-    const Tensor n = {t.a / s.a, (t.b - k * t.a) / (l11 * l22),
-                      t.q(-k, 1) / (l22 * l22)};  // the last: (-k, 1) / l22 is a row of L^-1
+    const Tensor difference = t - s;
+    const double blur = 0x1p-51 * (s.a + s.c);
+    if (std::fabs(difference.a) <= blur && std::fabs(difference.b) <= blur &&
+        std::fabs(difference.c) <= blur) {
+        return s;  // equal but for rounding, which N of a thin ellipse would magnify
+    }
+    const double k = s.b / s.a;  // L = sqrt(s.a) ((1, 0), (k, l22)), det s = s.a^2 l22^2
+    const double l22 = sqrt_det(s) / s.a;
+    const Tensor n = {t.a / s.a, (t.b - k * t.a) / (s.a * l22), t.q(-k, 1) / (s.a * l22 * l22)};
     const Deviator dev(n);
     const double high = dev.mean + dev.r;
     if (high <= 1) return s;
     const double low = det(t) / (det(s) * high);
     if (low >= 1) return t;
     const Spectrum e = spectrum(n);
-    const double x = l11 * e.x, y = l21 * e.x + l22 * e.y;
-    return s + (high - 1) * Tensor{x * x, x * y, y * y};
+    const double x = e.x, y = k * e.x + l22 * e.y;
+    return s + ((high - 1) * s.a) * Tensor{x * x, x * y, y * y};
 }
 
 }  // namespace metrics
