@@ -31,7 +31,7 @@ namespace detail {
 class Carver {
   public:
     Carver(Triangulation& mesh, const std::vector<Point>& points, std::vector<SubEdge>& sub_edges)
-        : mesh_(mesh), points_(points), sub_edges_(sub_edges) {}
+        : mesh_(mesh), points_(points), sub_edges_(sub_edges), lookup_(sub_edges) {}
 
     // Sets the label of every triangle to its component.
     template <typename Poll>
@@ -146,6 +146,7 @@ class Carver {
     Triangulation& mesh_;
     const std::vector<Point>& points_;
     std::vector<SubEdge>& sub_edges_;
+    const EdgeLookup lookup_;
     std::vector<char> is_removed_;                // of each component
     std::vector<Index> region_;                   // of each component, 0 without a seed
     std::vector<std::pair<Index, Index>> sides_;  // the components beside each sub-edge
@@ -169,20 +170,15 @@ class Carver {
     }
 
     void find_sides() {
-        const EdgeLookup lookup(sub_edges_);
         sides_.assign(sub_edges_.size(), {NONE, NONE});
         for (const Triangle& t : mesh_.triangles) {
             for (int slot = 0; slot < 3; ++slot) {
                 const Index a = t.v[next(slot)], b = t.v[prev(slot)];
                 if (!is_locked(t.n[slot]) || a > b) continue;
                 const Index right = mesh_.triangles[triangle_of(t.n[slot])].label;
-                sides_[lookup.find(a, b)] = {t.label, right};
+                sides_[lookup_.find(a, b)] = {t.label, right};
             }
         }
-    }
-
-    Index segment_between(Index a, Index b) const {
-        return sub_edges_[EdgeLookup(sub_edges_).find(a, b)].segment;
     }
 
     // The component that point p is in; on a segment it is in none, which is a fault.
@@ -198,13 +194,22 @@ class Carver {
             mesh_.ball(T.v[where.slot], edges);
             for (Place& e : edges) e.slot = next(e.slot);
         }
-        for (const auto [t, slot] : edges) {
-            const Triangle& E = mesh_.triangles[t];
-            if (!is_locked(E.n[slot])) continue;
-            const Index segment = segment_between(E.v[next(slot)], E.v[prev(slot)]);
-            throw Fault(fault_on_segment, number, segment, p);
-        }
+        const Index segment = lowest_segment(edges);
+        if (segment != NONE) throw Fault(fault_on_segment, number, segment, p);
         return T.label;
+    }
+
+    // Of the segments that have one of the edges; NONE if none is locked.
+    Index lowest_segment(const std::vector<Place>& edges) const {
+        Index lowest = NONE;
+        for (const auto [t, slot] : edges) {
+            const Triangle& T = mesh_.triangles[t];
+            if (!is_locked(T.n[slot])) continue;
+            const Index edge = lookup_.find(T.v[next(slot)], T.v[prev(slot)]);
+            const Index segment = sub_edges_[edge].segment;
+            lowest = lowest == NONE ? segment : std::min(lowest, segment);
+        }
+        return lowest;
     }
 };
 

@@ -101,8 +101,10 @@ class Constrainer {
     Triangulation& mesh_;
     const std::vector<Point>& points_;
     const std::vector<Segment>& segments_;
-    std::vector<Place> ball_, doubtful_;
+    std::vector<Place> doubtful_;
     std::vector<Index> left_, right_;
+
+    int slot_in(Index t, Index vertex) const { return mesh_.triangles[t].slot_of_vertex(vertex); }
 
     int side(Index a, Index b, Index v) const {
         return orient2d(points_[a], points_[b], points_[v]);
@@ -114,16 +116,25 @@ class Constrainer {
         return f.x != g.x ? (f.x < g.x) == (f.x < p.x) : (f.y < g.y) == (f.y < p.y);
     }
 
-    Ahead look_ahead(Index from, Index goal) {
-        mesh_.ball(from, ball_);
-        for (const auto [t, i] : ball_) {
-            const Index right = mesh_.triangles[t].v[next(i)], left = mesh_.triangles[t].v[prev(i)];
-            if (right == GHOST || left == GHOST) continue;
-            const int at_right = side(from, goal, right), at_left = side(from, goal, left);
-            if (at_right == 0 && is_ahead(from, goal, right)) return {false, {t, prev(i)}};
-            if (at_left == 0 && is_ahead(from, goal, left)) return {false, {t, next(i)}};
-            if (at_right < 0 && at_left > 0) return {true, {t, i}};
-        }
+    // Turns around `from`, towards the goal from where it starts: around a hub of many segments
+    // that is seldom far.
+    Ahead look_ahead(Index from, Index goal) const {
+        const Index start = mesh_.triangle_at(from);
+        const Index left_of_start = mesh_.triangles[start].v[prev(slot_in(start, from))];
+        const bool turn_left = left_of_start == GHOST || side(from, left_of_start, goal) > 0;
+        Index t = start;
+        do {
+            const Triangle& T = mesh_.triangles[t];
+            const int i = slot_in(t, from);
+            const Index right = T.v[next(i)], left = T.v[prev(i)];
+            if (right != GHOST && left != GHOST) {
+                const int at_right = side(from, goal, right), at_left = side(from, goal, left);
+                if (at_right == 0 && is_ahead(from, goal, right)) return {false, {t, prev(i)}};
+                if (at_left == 0 && is_ahead(from, goal, left)) return {false, {t, next(i)}};
+                if (at_right < 0 && at_left > 0) return {true, {t, i}};
+            }
+            t = triangle_of(T.n[turn_left ? next(i) : prev(i)]);
+        } while (t != start);
         throw std::logic_error("a segment leaves its first vertex between two triangles");
     }
 
@@ -150,74 +161,89 @@ class Constrainer {
     // Turns the triangles along the way from `from`, over edge `crossed`, to the next vertex on
     // the way so that the way is an edge; returns it.
     //
-    // First every crossed edge is flipped, in order, whether its quadrilateral is convex or not.
-    // That leaves all of the triangles fanned out around `from`, some of them inside out, and the
-    // way as an edge between the fan of the vertices on its left and that on its right:
+    // First every crossed edge is flipped, in order, whether its quadrilateral is convex or not
+    // (as Shewchuk's Triangle does). That leaves the triangles fanned out around `from`, the way
+    // as an edge between a fan on its left and one on its right, and some triangles inside out:
     //
-    //         l1    l2                 l1____l2
-    //        / \   / | \              / \   _/ \                .
-    //      l0   \ /  |  \           l0  _\_/ _  \               .
-    //     /  \   /\  |   to   ->    /|_/_/__-  - to             .
-    //   from  \ /  \ |  /         from -----__---/              .
-    //      \__r0____r1_/             \__r0____r1_/
+    //           l0                         l0
+    //         / | \ \                    /    \                 .
+    //       /   |  \   \               /         \              .
+    //    from --+---+-- to   ->     from --------- to
+    //       \   |    \  /              \ \___     /
+    //         \ |     \/                 \   \__ /
+    //           r0----r1                  r0---- r1
     //
+    // Then each fan is unfolded.
     Place make_edge(Place crossed, Index from, Index segment) {
         const Index goal = segments_[segment].b;
-        left_.clear(), right_.clear(), doubtful_.clear();
-        for (Index t = crossed.triangle;;) {
-            const int i = mesh_.triangles[t].slot_of_vertex(from);
-            const Index code = mesh_.triangles[t].n[i];
-            if (is_locked(code)) throw crossing(segment, {t, i});
+        left_.clear(), right_.clear();
+        Index t = crossed.triangle;
+        for (int apex_side = 1; apex_side != 0;) {
+            const Place edge{t, slot_in(t, from)};
+            const Index code = mesh_.triangles[t].n[edge.slot];
+            if (is_locked(code)) throw crossing(segment, edge);
             const Index u = triangle_of(code);
             const Index apex = mesh_.triangles[u].v[slot_of(code)];
-            mesh_.flip({t, i});  // t = (from, right, apex), u = (apex, left, from)
-            const int apex_side = side(from, goal, apex);
+            mesh_.flip(edge);  // t = (from, right, apex), u = (apex, left, from)
+            apex_side = side(from, goal, apex);
             if (apex_side <= 0) right_.push_back(t);
             if (apex_side >= 0) left_.push_back(u);
-            if (apex_side == 0) {
-                for (Index k : left_) doubt(k);
-                for (Index k : right_) doubt(k);
-                unfold(from, left_, 1);
-                unfold(from, right_, -1);
-                return mesh_.find_edge(from, apex, ball_);
-            }
-            t = apex_side > 0 ? t : u;
+            if (apex_side < 0) t = u;
         }
+        for (Index k : left_) doubt(k);
+        for (Index k : right_) doubt(k);
+        unfold(from, right_, Fan::right);
+        const Index last = unfold(from, left_, Fan::left);
+        return {last, prev(slot_in(last, from))};
     }
 
-    // Turns a fan around `from`, some of whose triangles are inside out, into a triangulation of
-    // the polygon between its outer vertices l0 l1 ... and the edge at its end. Every vertex of
-    // that polygon sees the edge, and so Graham's scan triangulates it (Toussaint, Avis 1982): go
-    // along the vertices, and cut off the last but one as long as it is a convex corner. A cut is
-    // a flip of its edge to `from`:
+    enum class Fan { left, right };
+
+    // Turns a fan around `from`, whose triangles may be inside out, into a triangulation of the
+    // polygon between its outer vertices and the edge at its end. Every vertex of that polygon
+    // sees the edge, and so Graham's scan triangulates it (Toussaint and Avis 1982): go along the
+    // vertices and cut off the last but one, `mid`, as long as it is a convex corner. A cut is a
+    // flip of the edge from `mid` to `from`. Returns the triangle of `from` at the end.
     //
-    //       mid___old               mid___old           `turn` is 1 for the fan on the left of the
-    //       /  \   |                / ___/ |            edge (drawn), its triangles in clockwise
-    //     new   \  |      ->      new      |            order, and -1 for its mirror image.
+    //       mid___old               mid___old
+    //       /  \   |                / ___/ |         a fan on the left, its triangles clockwise;
+    //     new   \  |      ->      new      |         one on the right is the mirror image
     //       \__  \ |                \___   |
     //          `--from                  `--from
-    void unfold(Index from, const std::vector<Index>& fan, int turn) {
-        int uncut = 0;  // vertices before `mid` that were not convex when they were looked at
-        for (Index t : fan) {
-            for (;;) {
-                const Triangle& T = mesh_.triangles[t];
-                const int i = T.slot_of_vertex(from);
-                const int newest = turn > 0 ? next(i) : prev(i);
-                const Index mid = T.v[turn > 0 ? prev(i) : next(i)];
-                const Index across = T.n[newest];
-                const Index old =
-                    uncut > 0 ? mesh_.triangles[triangle_of(across)].v[slot_of(across)] : from;
-                if (side(T.v[newest], mid, old) * turn <= 0) {
-                    ++uncut;
-                    break;
-                }
-                if (uncut == 0) break;  // the triangle (newest, mid, from) is itself the cut
-                const Index u = triangle_of(across);
-                mesh_.flip({t, newest});
-                if (turn > 0) t = u;  // the triangle of `from`, see Triangulation::flip
+    Index unfold(Index from, const std::vector<Index>& fan, Fan which) {
+        int uncut = 0;  // vertices between `mid` and the start that were not convex in their turn
+        Index t = NONE;
+        for (Index following : fan) {
+            t = following;
+            while (uncut > 0 && is_corner(from, t, which, false)) {
+                const Place edge = edge_to_mid(from, t, which);
+                const Index u = triangle_of(mesh_.triangles[t].n[edge.slot]);
+                mesh_.flip(edge);
+                if (which == Fan::left) t = u;  // the one at `from`, see Triangulation::flip
                 --uncut;
             }
+            // The first vertex needs no flip: (new, mid, from) is what is cut off.
+            const bool cut_off = uncut == 0 && is_corner(from, t, which, true);
+            if (!cut_off) ++uncut;
         }
+        return t;
+    }
+
+    // The edge from `mid` to `from` in triangle t of a fan: opposite `new`.
+    Place edge_to_mid(Index from, Index t, Fan which) const {
+        const int i = slot_in(t, from);
+        return {t, which == Fan::left ? next(i) : prev(i)};
+    }
+
+    // Is `mid` convex, between `new` and `old`? The first vertex of a fan has `from` for old.
+    bool is_corner(Index from, Index t, Fan which, bool mid_is_first) const {
+        const Place edge = edge_to_mid(from, t, which);
+        const Triangle& T = mesh_.triangles[t];
+        const Index code = T.n[edge.slot];
+        const Index old = mid_is_first ? from : mesh_.triangles[triangle_of(code)].v[slot_of(code)];
+        const bool left = which == Fan::left;
+        const Index mid = T.v[left ? next(edge.slot) : prev(edge.slot)];
+        return side(T.v[edge.slot], mid, old) == (left ? 1 : -1);
     }
 
     void doubt(Index t) {

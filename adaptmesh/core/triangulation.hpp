@@ -147,8 +147,7 @@ class Triangulation {
         link(u, 0, ca);
         link(u, 2, dc);
         link(t, 1, edge_code(u, 1));
-        set_triangle_at(a, t), set_triangle_at(b, t);
-        set_triangle_at(c, u), set_triangle_at(d, u);
+        set_triangle_at(b, t), set_triangle_at(c, u);  // a and d are in both
     }
 
     // Puts vertex p strictly inside triangle t:
@@ -173,7 +172,6 @@ class Triangulation {
         link(t, 1, edge_code(t1, 2));
         link(t1, 1, edge_code(t2, 2));
         link(t2, 1, edge_code(t, 2));
-        set_triangle_at(p, t), set_triangle_at(b, t), set_triangle_at(c, t);
         return {t1, t2};
     }
 

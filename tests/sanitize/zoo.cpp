@@ -35,6 +35,10 @@ void require(bool holds, const Input& input, const char* what) {
     std::exit(1);
 }
 
+bool is_ghost(const Triangle& T) {
+    return (T.v[0] | T.v[1] | T.v[2]) < 0;
+}
+
 // Neighbours agree about their edge and its lock, triangles are counter-clockwise.
 void check_mesh(const Triangulation& mesh, const Input& input) {
     for (Index t = 0; t < mesh.triangle_count(); ++t) {
@@ -48,7 +52,7 @@ void check_mesh(const Triangulation& mesh, const Input& input) {
             require(U.v[next(j)] == T.v[prev(i)] && U.v[prev(j)] == T.v[next(i)], input,
                     "neighbours share the edge");
         }
-        if ((T.v[0] | T.v[1] | T.v[2]) < 0) continue;
+        if (is_ghost(T)) continue;
         require(orient2d(input.points[T.v[0]], input.points[T.v[1]], input.points[T.v[2]]) > 0,
                 input, "triangles are counter-clockwise");
     }
@@ -78,6 +82,76 @@ void run_delaunay(const Input& input) {
     }
 }
 
+// Flips edges at random, so that nothing of Delaunay is left for a walk to rely on.
+void scramble(Triangulation& mesh, const Input& input, std::mt19937& random) {
+    const auto side = [&input](Index a, Index b, Index c) {
+        return orient2d(input.points[a], input.points[b], input.points[c]);
+    };
+    for (Index k = 0; k < 6 * mesh.triangle_count(); ++k) {
+        const Place edge{Index(random() % mesh.triangles.size()), int(random() % 3)};
+        const Triangle& T = mesh.triangles[edge.triangle];
+        const Index code = T.n[edge.slot];
+        if (is_locked(code) || is_ghost(T) || is_ghost(mesh.triangles[triangle_of(code)])) continue;
+        const Index a = T.v[edge.slot], b = T.v[next(edge.slot)], c = T.v[prev(edge.slot)];
+        const Index d = mesh.triangles[triangle_of(code)].v[slot_of(code)];
+        if (side(a, b, d) > 0 && side(a, d, c) > 0) mesh.flip(edge);
+    }
+}
+
+// The walk's answer is true: p is in or on what it names, or beyond a wall.
+void check_location(const Triangulation& mesh, const Input& input, Point p, Location found,
+                    Walls walls) {
+    const Triangle& T = mesh.triangles[found.triangle];
+    require(!is_ghost(T), input, "a location is in a real triangle");
+    const auto at = [&input](Index v) { return input.points[v]; };
+    int side[3];
+    for (int i = 0; i < 3; ++i) side[i] = detail::side_of_edge(T, i, at, p);
+    const int s = found.slot;
+    switch (found.where) {
+        case Where::in_triangle:
+            require(side[0] > 0 && side[1] > 0 && side[2] > 0, input, "in the triangle");
+            break;
+        case Where::on_edge:
+            require(side[s] == 0 && side[next(s)] > 0 && side[prev(s)] > 0, input, "on the edge");
+            break;
+        case Where::on_vertex:
+            require(at(T.v[s]).x == p.x && at(T.v[s]).y == p.y, input, "on the vertex");
+            break;
+        case Where::outside:
+            require(side[s] < 0 && detail::is_wall(mesh, T.n[s], walls), input, "beyond a wall");
+            break;
+    }
+}
+
+void run_locate(const Input& input) {
+    NoPoll poll;
+    std::mt19937 random(5);
+    std::vector<Index> duplicate_of;
+    Triangulation hull = delaunay(input.points, duplicate_of, poll);
+    scramble(hull, input, random);
+    Triangulation domain =
+        triangulate(input.points, input.segments, input.options, poll).triangulation;
+    scramble(domain, input, random);
+
+    const auto at = [&input](Index v) { return input.points[v]; };
+    for (int k = 0; k < 300; ++k) {
+        const Point a = input.points[random() % input.points.size()];
+        const Point b = input.points[random() % input.points.size()];
+        const Point p{a.x / 2 + b.x / 2, a.y / 2 + b.y / 2};  // in the hull, but for rounding
+        Location found = locate(hull, at, p, Index(random() % hull.triangles.size()));
+        check_location(hull, input, p, found, Walls::border);
+        if (found.where == Where::outside) {
+            found = detail::locate_by_search(hull, at, p, found);
+            require(found.where == Where::outside, input,
+                    "a walk in a convex hull finds the point");
+        }
+        for (Walls walls : {Walls::border, Walls::locked_edges}) {
+            const Index start = Index(random() % domain.triangles.size());
+            check_location(domain, input, p, locate(domain, at, p, start, walls), walls);
+        }
+    }
+}
+
 void run_triangulate(const Input& input) {
     NoPoll poll;
     const ConstrainedTriangulation out =
@@ -94,7 +168,7 @@ void run_triangulate(const Input& input) {
             "the other sub-edges are locked");
 }
 
-constexpr void (*PARTS[])(const Input&) = {run_delaunay, run_triangulate};
+constexpr void (*PARTS[])(const Input&) = {run_delaunay, run_locate, run_triangulate};
 
 // ---- The inputs ----
 
