@@ -14,7 +14,7 @@ from rich.text import Text
 if TYPE_CHECKING:
     from .report import Point, Report
 
-WIDTH = 88
+WIDTH = 100
 ROWS = 6  # height of the histograms
 SHOWN = 3  # worst edges and triangles
 EIGHTHS = " ▁▂▃▄▅▆▇█"
@@ -134,7 +134,7 @@ def _worst(report: Report) -> Table:
 
 
 def _at(point: Point) -> str:
-    return f"({point[0]:.6g}, {point[1]:.6g})"
+    return f"({point[0]:.5g}, {point[1]:.5g})"
 
 
 def _count(number: float) -> str:

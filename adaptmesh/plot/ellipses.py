@@ -15,7 +15,7 @@ Ints = NDArray[np.integer]
 
 SIDES = 64  # of the polygon that is drawn
 TRIES = 30  # places looked at for each ellipse
-GAP = 1.15  # between neighbours
+GAP = 1.05  # between neighbours
 SMALLEST = 10.0  # pixels; smaller ellipses are enlarged, all by the same factor
 
 
@@ -60,9 +60,12 @@ def choose(places: Floats, tensors: Floats, most: int, frame: Frame) -> Ellipses
     fits = ((places - halves >= low) & (places + halves <= high)).all(axis=1)
     kept: list[int] = []
     for i in np.flatnonzero(fits) if fits.any() else range(len(places)):
-        d = places[kept] - places[i]
-        reach = enlarged * (1 / _norm(tensors[kept], d) + 1 / _norm(tensors[i : i + 1], d))
-        if (reach * GAP < 1).all():  # both radii in the direction of d, as a share of its length
+        step, here = places[kept] - places[i], tensors[i : i + 1]
+        apart = np.maximum(
+            _norm(here, step) - GAP * enlarged * (1 + _reach(tensors[kept], here)),
+            _norm(tensors[kept], step) - GAP * enlarged * (1 + _reach(here, tensors[kept])),
+        )
+        if (apart > 0).all():
             kept.append(int(i))
         if len(kept) == most:
             break
@@ -83,6 +86,17 @@ def _norm(tensors: Floats, d: Floats) -> Floats:
     m11, m12, m22 = tensors.T
     x, y = d.T
     out: Floats = np.sqrt(np.maximum(m11 * x * x + 2 * m12 * x * y + m22 * y * y, 1e-300))
+    return out
+
+
+def _reach(tensors: Floats, ruler: Floats) -> Floats:
+    """The longest radius of ellipses in another metric: √ of the larger eigenvalue of M⁻¹ R."""
+    a11, a12, a22 = tensors.T
+    b11, b12, b22 = ruler.T
+    det = a11 * a22 - a12 * a12
+    half = (a22 * b11 - 2 * a12 * b12 + a11 * b22) / det / 2
+    both = (b11 * b22 - b12 * b12) / det
+    out: Floats = np.sqrt(half + np.sqrt(np.maximum(half * half - both, 0)))
     return out
 
 

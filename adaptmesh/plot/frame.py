@@ -51,9 +51,12 @@ class Frame:
     key: float
 
     @classmethod
-    def of(cls, bounds: Bounds, window: tuple[int, int] | None, has_key: bool) -> Frame:
+    def of(
+        cls, bounds: Bounds, window: tuple[int, int] | None, has_title: bool, has_key: bool
+    ) -> Frame:
         """The layout for a view; without a size given the window takes the shape of the view."""
-        margin, header, key = 24.0, 66.0, 190.0 if has_key else 0.0
+        margin = 24.0
+        header, key = 66.0 if has_title else 46.0, 190.0 if has_key else 0.0
         if window is None:
             width, height = _stretched(bounds)[1]
             longer = max(width, height)
@@ -62,7 +65,7 @@ class Frame:
                 sides[1] = max(sides[1], 420)
             window = (round(sides[0] + 2 * margin + key), round(sides[1] + 1.5 * margin + header))
         else:  # small pictures have small margins
-            unit = min(window[0] / 1000, window[1] / 700, 1.0)
+            unit = float(np.clip(min(window[0] / 1000, window[1] / 700), 0.6, 1.0))
             margin, header, key = margin * unit, header * unit, key * unit
         return cls(bounds, window, margin, header, key)
 

@@ -124,7 +124,7 @@ def draw_scale(pen: Pen, scale: Scale, top: float, length: float) -> float:
     if scale.band is not None:
         first, last, name = scale.band
         y0, y1 = (low + float(scale.share(v)) * (high - low) for v in (first, last))
-        bar = x + width + 52 * u
+        bar = x + width + 60 * u
         marks += [
             (bar, y0, bar + 3 * u, y1),
             (bar - 4 * u, y0, bar, y0 + 1),
@@ -157,7 +157,7 @@ def draw_legend(
     return y - 14 * u
 
 
-def _shortened(name: str, most: int = 17) -> str:
+def _shortened(name: str, most: int = 20) -> str:
     return name if len(name) <= most else name[: most - 1] + "…"
 
 

@@ -32,7 +32,7 @@ def draw_faces(
     shape = pv.PolyData.from_regular_faces(frame.place(points, FACES), triangles)
     data = shape.cell_data if len(colours) == len(triangles) else shape.point_data
     data["colour"] = colours
-    plotter.add_mesh(shape, scalars="colour", rgb=True, lighting=False, copy_mesh=False)
+    plotter.add_mesh(shape, scalars="colour", rgb=True, lighting=False)
 
 
 def draw_edges(
@@ -56,18 +56,15 @@ def draw_edges(
     """
     opacity = 255 * strength * np.clip(spacing * frame.pixel / (CLEAR * frame.unit), 0, 1)
     seen = opacity >= FAINTEST
-    shape = _lines(frame.place(points, EDGES), edges[seen])
-    shape.cell_data["colour"] = np.column_stack([colours[seen], opacity[seen]]).astype(np.uint8)
-    _add_lines(plotter, shape, width * frame.unit)
+    rgba = np.column_stack([colours[seen], opacity[seen].astype(np.uint8)])
+    _add_lines(plotter, frame.place(points, EDGES), edges[seen], rgba, width * frame.unit)
 
 
 def draw_lines(
     plotter: pv.Plotter, frame: Frame, points: Floats, edges: Ints, colours: Bytes, width: float
 ) -> None:
     """Draw constrained edges, thick."""
-    shape = _lines(frame.place(points, LINES), edges)
-    shape.cell_data["colour"] = colours
-    _add_lines(plotter, shape, width * frame.unit)
+    _add_lines(plotter, frame.place(points, LINES), edges, colours, width * frame.unit)
 
 
 def draw_ellipses(plotter: pv.Plotter, frame: Frame, ellipses: Ellipses) -> None:
@@ -81,29 +78,21 @@ def draw_ellipses(plotter: pv.Plotter, frame: Frame, ellipses: Ellipses) -> None
     veil = pv.PolyData.from_regular_faces(corners, number)
     plotter.add_mesh(veil, color=ELLIPSE, opacity=0.16, lighting=False)
     sides = np.stack([number, np.roll(number, -1, axis=1)], axis=2).reshape(-1, 2)
-    shape = _lines(corners, sides)
-    shape.cell_data["colour"] = np.tile(rgb(ELLIPSE), (len(sides), 1))
-    _add_lines(plotter, shape, 1.6 * frame.unit)
+    colours = np.tile(rgb(ELLIPSE), (len(sides), 1))
+    _add_lines(plotter, corners, sides, colours, 1.6 * frame.unit)
 
 
-def _lines(points: NDArray[np.float32], edges: Ints) -> pv.PolyData:
+def _add_lines(
+    plotter: pv.Plotter, points: NDArray[np.float32], edges: Ints, colours: Bytes, width: float
+) -> None:
     import pyvista as pv
 
-    cells = np.column_stack([np.full(len(edges), 2), edges])
-    return pv.PolyData(points, lines=cells)
-
-
-def _add_lines(plotter: pv.Plotter, shape: pv.PolyData, width: float) -> None:
-    if shape.n_cells == 0:
+    if len(edges) == 0:
         return
-    plotter.add_mesh(
-        shape,
-        scalars="colour",
-        rgb=True,
-        line_width=max(THICKER * width, 1.0),
-        lighting=False,
-        copy_mesh=False,
-    )
+    shape = pv.PolyData(points, lines=np.column_stack([np.full(len(edges), 2), edges]))
+    shape.cell_data["colour"] = colours
+    width = max(THICKER * width, 1.0)
+    plotter.add_mesh(shape, scalars="colour", rgb=True, line_width=width, lighting=False)
 
 
 def edge_spacing(frame: Frame, points: Floats, triangles: Ints, sides: Ints, count: int) -> Floats:

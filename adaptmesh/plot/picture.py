@@ -104,13 +104,14 @@ def plot(
     target = None if path is None else check_path(path)
     field = None if metric is None else control_space_on(mesh, metric)
     most = ELLIPSES if ellipses is True else int(ellipses)
-    view = View(mesh, bounds or bounds_of(mesh.points))
+    seen = bounds or bounds_of(mesh.points)
+    view = View(mesh, seen)
     _check_request(show, field, most, view)
     paint = _paint(view, show, field, cmap)
     lines, names = paint_names(view)
 
     has_key = bool(paint.scale or paint.entries or names or most)
-    frame = Frame.of(bounds or bounds_of(mesh.points), window_size, has_key)
+    frame = Frame.of(seen, window_size, bool(title), has_key)
     with quiet():
         plotter = make_plotter(frame, True if target is not None else off_screen)
         _draw_mesh(plotter, frame, view, paint, lines, edges)
@@ -179,7 +180,7 @@ def _draw_ellipses(
 
 
 def _draw_key(pen: Pen, paint: Paint, names: list[Entry], chosen: Ellipses | None) -> None:
-    """Colour scale, regions, names of boundaries, ellipses, from the top down."""
+    """Colour scale, regions, names of lines, ellipses, from the top down."""
     frame = pen.frame
     y = frame.window[1] - frame.header
     if paint.scale is not None:
@@ -187,9 +188,9 @@ def _draw_key(pen: Pen, paint: Paint, names: list[Entry], chosen: Ellipses | Non
     if paint.entries:
         y = draw_legend(pen, "regions", paint.entries, y, 18)
     if names:
-        y = draw_legend(pen, "boundaries", names, y, 4)
+        y = draw_legend(pen, "lines", names, y, 4)
     if chosen is not None:
-        times = "" if chosen.enlarged == 1 else f", × {chosen.enlarged:g}"
+        times = "" if chosen.enlarged == 1 else f" × {chosen.enlarged:g}"
         draw_legend(pen, "metric", [(f"unit ellipses{times}", ELLIPSE)], y, 4)
 
 
