@@ -211,7 +211,7 @@ def plot(
 
         wanted = size is not None or metric is not None
         if (ellipses or show is Show.length) and not wanted:
-            raise typer.BadParameter("in which metric? Give --size or --metric")
+            raise typer.BadParameter("of which metric? Give --size or --metric")
         _check_outputs(output)
         drawn = am.read(mesh)
         control = _control_space(size, metric, drawn) if wanted else None

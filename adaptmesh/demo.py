@@ -29,9 +29,9 @@ class View:
     """A picture of a mesh; the file is called after the case and the suffix."""
 
     suffix: str
-    bounds: tuple[float, float, float, float]
-    """The window (x0, y0, x1, y1)."""
     show: str
+    bounds: tuple[float, float, float, float] | None = None
+    """The window (x0, y0, x1, y1), by default everything."""
     ellipses: bool = False
 
 
@@ -115,11 +115,11 @@ def iceland(coarsening: float = 1.0) -> Case:
     return Case(
         name="iceland",
         title="Iceland: the size grows away from the coast",
-        domain=domain_of_polygons([land, sea], ["land", "sea"]),
+        domain=domain_of_polygons([sea, land], ["sea", "land"]),
         field=size,
         views=(
-            View("", (-410.0, -330.0, 410.0, 330.0), show="region"),
-            View("-westfjords", (-215.0, 55.0, -95.0, 150.0), show="region"),
+            View("", "region"),
+            View("-westfjords", "region", bounds=(-215.0, 55.0, -95.0, 150.0)),
         ),
     )
 
@@ -165,8 +165,8 @@ def aerofoil(coarsening: float = 1.0) -> Case:
         domain=domain,
         field=metric,
         views=(
-            View("", (-0.35, -0.6, 1.35, 0.6), show="mesh"),
-            View("-nose", (-0.02, -0.03, 0.06, 0.03), show="length", ellipses=True),
+            View("", "mesh", bounds=(-0.35, -0.55, 1.35, 0.55)),
+            View("-nose", "length", bounds=(-0.02, -0.022, 0.03, 0.022), ellipses=True),
         ),
     )
 
