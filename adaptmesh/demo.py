@@ -202,7 +202,7 @@ class Wing:
     @cached_property
     def contour(self) -> Floats:
         """Points (n, 2), dense near both edges, counter-clockwise round from the trailing edge."""
-        theta = np.linspace(0.0, 2.0 * np.pi, 8001)
+        theta = np.linspace(0.0, 2.0 * np.pi, 2001)
         x = 0.5 * (1.0 + np.cos(theta))
         root = np.abs(np.cos(0.5 * theta))
         half = 0.6 * (0.2969 * root - 0.1260 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
