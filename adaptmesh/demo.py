@@ -232,7 +232,8 @@ class Wing:
         to_tail = np.linalg.norm(self.contour - (1.0, 0.0), axis=1)
         nose = 0.1 * 0.0159 * self.coarsening + 0.06 * to_nose
         tail = self.h_edges + 0.12 * to_tail
-        return np.minimum(np.minimum(nose, tail), 0.025 * self.coarsening)
+        spacing: Floats = np.minimum(np.minimum(nose, tail), 0.025 * self.coarsening)
+        return spacing
 
     def unit_spaced(self) -> Floats:
         """Points (k, 2) on the contour, one step of `spacing` apart, once round."""
@@ -241,7 +242,8 @@ class Wing:
         length = np.concatenate([[0.0], np.cumsum(step * mean)])
         half = max(4, round(0.5 * length[-1]))
         shares = np.linspace(0.0, length[-1], 2 * half + 1)[:-1]
-        return np.stack([np.interp(shares, length, c) for c in self.contour.T], axis=1)
+        x, y = self.contour.T
+        return np.stack([np.interp(shares, length, x), np.interp(shares, length, y)], axis=1)
 
     @cached_property
     def _tree(self) -> Any:
