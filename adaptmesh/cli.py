@@ -261,6 +261,8 @@ def _neat_errors() -> Iterator[None]:
         yield
     except AdaptmeshError as error:
         _fail(str(error))
+    except BrokenPipeError:
+        raise  # the reader of our output has left, as in `| head`; typer ends quietly
     except OSError as error:
         _fail(f"{error.filename or 'a file'}: {error.strerror or error}")
     except KeyboardInterrupt:
