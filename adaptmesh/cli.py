@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
@@ -211,8 +211,8 @@ def plot(
 
         wanted = size is not None or metric is not None
         if (ellipses or show is Show.length) and not wanted:
-            raise typer.BadParameter("in which metric? Give --size or --metric")
-        _check_outputs(output)
+            raise typer.BadParameter("of which metric? Give --size or --metric")
+        _check_outputs(picture=output)
         drawn = am.read(mesh)
         control = _control_space(size, metric, drawn) if wanted else None
         am.plot(drawn, control, show=show.value, ellipses=ellipses, path=output)
@@ -261,10 +261,12 @@ def _neat_errors() -> Iterator[None]:
         yield
     except AdaptmeshError as error:
         _fail(str(error))
+    except BrokenPipeError:
+        raise  # the reader of our output has left, as in `| head`; typer ends quietly
     except OSError as error:
         _fail(f"{error.filename or 'a file'}: {error.strerror or error}")
     except KeyboardInterrupt:
-        typer.echo("interrupted; nothing was written", err=True)
+        typer.echo("interrupted", err=True)
         raise typer.Exit(EXIT_INTERRUPTED) from None
 
 
@@ -277,11 +279,18 @@ def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
     typer.echo(typer.style("warning: ", fg=typer.colors.YELLOW, bold=True) + str(message), err=True)
 
 
-def _check_outputs(*paths: Path | None) -> None:
-    """Find out before the work, not after it, that there is no folder to put the result in."""
-    for path in paths:
+def _check_outputs(mesh: Path | None = None, picture: Path | None = None) -> None:
+    """Find out before the work, not after it, that the result cannot be put there."""
+    from .io.formats import format_of
+    from .plot.screen import check_path
+
+    for path in (mesh, picture):
         if path is not None and not path.parent.is_dir():
             raise typer.BadParameter(f"there is no folder {str(path.parent)!r} for {path.name!r}")
+    if mesh is not None:
+        format_of(mesh)
+    if picture is not None:
+        check_path(picture)
 
 
 def _outline_and_mesh(path: Path, make_valid: bool) -> tuple[Domain, Mesh | None]:
@@ -300,10 +309,10 @@ def _control_space(size: str | None, metric: Path | None, mesh: Mesh | None) -> 
     """What --size or --metric asks for; exactly one of them, the latter on the vertices of mesh."""
     import metrics
 
-    if (size is None) == (metric is None):
-        raise typer.BadParameter("give one of --size and --metric")
-    if size is not None:
+    if size is not None and metric is None:
         return metrics.Expression(size)
+    if metric is None or size is not None:
+        raise typer.BadParameter("give one of --size and --metric")
     if mesh is None:
         raise typer.BadParameter(
             "--metric gives values at the vertices of a mesh, and DOMAIN is an outline without "
@@ -323,12 +332,12 @@ def _control_space(size: str | None, metric: Path | None, mesh: Mesh | None) -> 
 @contextmanager
 def _meshing(
     quiet: bool, max_vertices: int | None, placement: str | None
-) -> Iterator[dict[str, object]]:
+) -> Iterator[dict[str, Any]]:
     """The options of `generate` and `adapt` that were given, and a progress bar while they run."""
     from .generate import PLACEMENTS
     from .progress import TerminalProgress
 
-    options: dict[str, object] = {}
+    options: dict[str, Any] = {}
     if max_vertices is not None:
         options["max_vertices"] = max_vertices
     if placement is not None:

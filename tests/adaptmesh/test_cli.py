@@ -209,8 +209,13 @@ def test_bad_meshes(run, tmp_path, suffix):
         assert_bad(run("convert", f"bad{suffix}", "out.vtu"), f"bad{suffix}")
 
 
-def test_an_unknown_output_format_is_refused(run, mesh):
+def test_an_unknown_output_format_is_refused_before_the_work(run, square, mesh, monkeypatch):
     assert_bad(run("convert", mesh, "out.docx"), "out.docx")
+    monkeypatch.setattr(am, "generate", None)
+    assert_bad(run("generate", square, "-s", "1", "-o", "out.docx"), "out.docx")
+    drawn = run("generate", square, "-s", "1", "-o", "out.vtu", "--plot", "out.docx")
+    assert_bad(drawn, "out.docx")
+    assert_bad(run("plot", mesh, "-o", "out.docx"), "out.docx")
 
 
 def test_wrong_usage(run, square, mesh):
