@@ -1,5 +1,9 @@
 """Sphinx configuration. Build with: sphinx-build -W -b html docs docs/_build"""
 
+import subprocess
+import sys
+from pathlib import Path
+
 import adaptmesh
 
 project = "adaptmesh"
@@ -14,8 +18,7 @@ extensions = [
     "sphinx.ext.mathjax",
     "sphinx.ext.napoleon",
 ]
-exclude_patterns = ["_build"]
-templates_path = ["_templates"]
+exclude_patterns = ["_build", "generated/cli.md"]
 
 html_theme = "furo"
 html_title = f"adaptmesh {release}"
@@ -35,3 +38,15 @@ autodoc_member_order = "bysource"
 autosummary_generate = True
 autosummary_ignore_module_all = False
 autosummary_imported_members = True
+
+
+def write_command_reference() -> None:
+    """The options of each command, from the command line itself."""
+    target = Path(__file__).parent / "generated" / "cli.md"
+    target.parent.mkdir(exist_ok=True)
+    command = [sys.executable, "-m", "typer", "adaptmesh.cli", "utils", "docs"]
+    text = subprocess.run([*command, "--name", "adaptmesh"], check=True, stdout=subprocess.PIPE)
+    target.write_bytes(text.stdout)
+
+
+write_command_reference()
