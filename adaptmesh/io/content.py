@@ -169,11 +169,13 @@ def _edges_are_sides(edges: Array, triangles: Array, count: int) -> None:
         return out
 
     sides = np.concatenate([triangles[:, [1, 2]], triangles[:, [2, 0]], triangles[:, [0, 1]]])
-    bad = np.flatnonzero(~np.isin(keys(edges), keys(sides)))
+    known = np.sort(keys(sides))
+    place = np.searchsorted(known, keys(edges))
+    bad = np.flatnonzero(np.append(known, -1)[place] != keys(edges))
     if len(bad):
         raise FormatError(
-            f"edge {bad[0]} (vertices {edges[bad[0]].tolist()}) is not a side of any triangle; "
-            f"there are {len(bad)} such edges. Remove them, or mesh the plane so that it has them"
+            f"edge {bad[0]} (vertices {edges[bad[0]].tolist()}) is not a side of any triangle, "
+            f"one of {len(bad)} such edges; remove them, or make the triangles fit them"
         )
 
 

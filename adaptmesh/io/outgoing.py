@@ -41,8 +41,8 @@ def outgoing(
         metric=None if metric is None else _packed(metric, mesh.points),
     )
     for name in [*mesh.names, *mesh.region_names]:
-        if not isinstance(name, str) or not name:
-            raise FormatError(f"the name {name!r} is not a text; rename it")
+        if not isinstance(name, str) or not name or not _is_unicode(name):
+            raise FormatError(f"the name {name!r} is not a text of Unicode; rename it")
     for name, values in fields.items():
         array = _field(name, values)
         if len(array) not in (n, m):
@@ -60,6 +60,11 @@ def outgoing(
             )
         content.triangle_fields[name] = array
     return content
+
+
+def _is_unicode(name: str) -> bool:
+    """False with half a surrogate pair, which no file can hold."""
+    return not any("\ud800" <= c <= "\udfff" for c in name)
 
 
 def _packed(metric: Metric | ArrayLike, points: Array) -> Array:
