@@ -19,6 +19,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from metrics.control import Metric
+
 from ..errors import FormatError
 from ..mesh import Mesh
 from .content import Array, fields_of, mesh_of
@@ -96,7 +98,7 @@ def write(
     mesh: Mesh,
     /,
     *,
-    metric: ArrayLike | None = None,
+    metric: Metric | ArrayLike | None = None,
     triangle_fields: Mapping[str, ArrayLike] | None = None,
     version: str | None = None,
     binary: bool | None = None,
@@ -110,9 +112,9 @@ def write(
         The extension tells the format, see `FORMATS`.
     mesh : Mesh
         Must have triangles, finite points and vertex numbers in range.
-    metric : array, optional
-        At the points: packed (n, 3), tensors (n, 2, 2) or sizes (n,); `read_fields` gives it back
-        packed. In Medit it is ``name.sol`` beside ``name.mesh``.
+    metric : array, size, callable or ControlSpace, optional
+        At the points: packed (n, 3), tensors (n, 2, 2) or sizes (n,); or what can be evaluated
+        there. `read_fields` gives it back packed. In Medit it is ``name.sol`` beside ``name.mesh``.
     triangle_fields : mapping of str to array, optional
         Fields of the triangles, (m,), (m, 2) or (m, 3).
     version : {"4.1", "2.2"}, optional

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from ..errors import FormatError
 from ..mesh import Mesh
 
@@ -135,7 +135,8 @@ def _planar(points: Array) -> Array:
 
 
 def _counter_clockwise(points: Array, triangles: Array) -> Array:
-    signs = _orientation(points[triangles])
+    points = np.ascontiguousarray(points)
+    signs = np.asarray(_core.orient2d(*(points[corner] for corner in triangles.T)))
     flat = np.flatnonzero(signs == 0)
     if len(flat):
         t = flat[0]
@@ -148,27 +149,6 @@ def _counter_clockwise(points: Array, triangles: Array) -> Array:
     out: Array = triangles.copy()
     out[clockwise] = out[clockwise][:, [0, 2, 1]]
     return out
-
-
-def _orientation(corners: Array) -> Array:
-    """Exact sign of the area of each triangle (m, 3, 2).
-
-    Floating point decides where its error bound (Shewchuk 1997, `ccwerrboundA`) allows, rational
-    arithmetic elsewhere.
-    """
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    with np.errstate(over="ignore", invalid="ignore"):
-        left = (a[:, 0] - c[:, 0]) * (b[:, 1] - c[:, 1])
-        right = (a[:, 1] - c[:, 1]) * (b[:, 0] - c[:, 0])
-        det = left - right
-        bound = 3.3306690738754716e-16 * (np.abs(left) + np.abs(right)) + 1e-300
-        sure = np.abs(det) > bound
-    signs: Array = np.sign(det)
-    for t in np.flatnonzero(~sure):
-        (ax, ay), (bx, by), (cx, cy) = [[Fraction(x) for x in p] for p in corners[t].tolist()]
-        exact = (ax - cx) * (by - cy) - (ay - cy) * (bx - cx)
-        signs[t] = (exact > 0) - (exact < 0)
-    return signs
 
 
 def _refuse_duplicates(kind: str, cells: Array) -> None:
@@ -189,11 +169,13 @@ def _edges_are_sides(edges: Array, triangles: Array, count: int) -> None:
         return out
 
     sides = np.concatenate([triangles[:, [1, 2]], triangles[:, [2, 0]], triangles[:, [0, 1]]])
-    bad = np.flatnonzero(~np.isin(keys(edges), keys(sides)))
+    known = np.sort(keys(sides))
+    place = np.searchsorted(known, keys(edges))
+    bad = np.flatnonzero(np.append(known, -1)[place] != keys(edges))
     if len(bad):
         raise FormatError(
-            f"edge {bad[0]} (vertices {edges[bad[0]].tolist()}) is not a side of any triangle; "
-            f"there are {len(bad)} such edges. Remove them, or mesh the plane so that it has them"
+            f"edge {bad[0]} (vertices {edges[bad[0]].tolist()}) is not a side of any triangle, "
+            f"one of {len(bad)} such edges; remove them, or make the triangles fit them"
         )
 
 

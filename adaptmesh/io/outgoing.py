@@ -7,7 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from metrics.errors import MetricError
+from metrics import tensor
+from metrics.control import ControlSpace, Metric, as_control_space
 
 from ..errors import FormatError
 from ..mesh import Mesh
@@ -18,7 +19,7 @@ _RESERVED = ("metric", "regions", "edge_tags")
 
 def outgoing(
     mesh: Mesh,
-    metric: ArrayLike | None,
+    metric: Metric | ArrayLike | None,
     fields: Mapping[str, ArrayLike],
     triangle_fields: Mapping[str, ArrayLike],
 ) -> Content:
@@ -37,11 +38,11 @@ def outgoing(
         mesh.edge_tags,
         names=dict(mesh.names),
         region_names=dict(mesh.region_names),
-        metric=None if metric is None else packed_metric(metric, n),
+        metric=None if metric is None else _packed(metric, mesh.points),
     )
     for name in [*mesh.names, *mesh.region_names]:
-        if not isinstance(name, str) or not name:
-            raise FormatError(f"the name {name!r} is not a text; rename it")
+        if not isinstance(name, str) or not name or not _is_unicode(name):
+            raise FormatError(f"the name {name!r} is not a text of Unicode; rename it")
     for name, values in fields.items():
         array = _field(name, values)
         if len(array) not in (n, m):
@@ -61,60 +62,30 @@ def outgoing(
     return content
 
 
-def packed_metric(metric: ArrayLike, count: int) -> Array:
-    """Packed (n, 3) of packed metrics, tensors (n, 2, 2) or sizes (n,); positive definite."""
-    array = _reals("metric", metric)
-    shapes = {(count,), (count, 3), (count, 2, 2)}
-    if array.shape not in shapes:
-        raise MetricError(
-            f"metric has shape {array.shape}; for {count} points it is ({count},) sizes, "
-            f"({count}, 3) packed or ({count}, 2, 2)"
-        )
-    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        if array.ndim == 1:
-            packed = np.stack([array**-2.0, np.zeros(count), array**-2.0], axis=1)
-            good = array > 0
-        else:
-            packed = array if array.ndim == 2 else _upper("metric", array)
-            m11, m12, m22 = packed.T
-            # the determinant by scaled entries: no overflow
-            good = (m11 > 0) & (m22 > 0) & (np.abs(m12) < np.sqrt(m11) * np.sqrt(m22))
-    bad = np.flatnonzero(~(good & np.isfinite(packed).all(axis=1)))
-    if len(bad):
-        raise MetricError(
-            f"metric {bad[0]} is {array[bad[0]].tolist()}: a size must be positive, a tensor "
-            "symmetric positive definite, and both finite"
-        )
-    return packed
+def _is_unicode(name: str) -> bool:
+    """False with half a surrogate pair, which no file can hold."""
+    return not any("\ud800" <= c <= "\udfff" for c in name)
+
+
+def _packed(metric: Metric | ArrayLike, points: Array) -> Array:
+    """Packed (n, 3) of arrays at the points, or of anything that has a value everywhere."""
+    everywhere = callable(metric) or isinstance(metric, (ControlSpace, int, float))
+    values = as_control_space(metric)(points) if everywhere else metric  # type: ignore[arg-type]
+    return tensor.pack(values, points=points)  # type: ignore[arg-type]
 
 
 def solution_values(values: ArrayLike) -> Array:
-    """Values of a Medit solution, tensors packed."""
-    array = _reals("the solution", values)
-    if array.shape[1:] == (2, 2):
-        return _upper("the solution", array)
-    if array.ndim not in (1, 2) or (array.ndim == 2 and array.shape[1] not in (2, 3)):
-        raise FormatError(
-            f"the solution has shape {array.shape}; it must be (n,), (n, 2), (n, 3) or (n, 2, 2)"
-        )
-    return array
-
-
-def _upper(what: str, tensors: Array) -> Array:
-    bad = np.flatnonzero(tensors[:, 0, 1] != tensors[:, 1, 0])
-    if len(bad):
-        raise MetricError(f"{what} {bad[0]} is {tensors[bad[0]].tolist()}, not symmetric")
-    return np.stack([tensors[:, 0, 0], tensors[:, 0, 1], tensors[:, 1, 1]], axis=1)
-
-
-def _reals(what: str, values: ArrayLike) -> Array:
-    try:
-        array = np.asarray(values)
-    except ValueError as error:
-        raise FormatError(f"{what} is not an array: {error}") from None
-    if array.dtype.kind not in "fiub":
-        raise FormatError(f"{what} has values of type {array.dtype}; real numbers can be written")
-    return array.astype(np.float64)
+    """Values of a Medit solution, tensors packed; they need not be positive definite."""
+    array = _real("the solution", values).astype(np.float64)
+    if array.ndim == 3 and array.shape[1:] == (2, 2):
+        skew = np.flatnonzero(array[:, 0, 1] != array[:, 1, 0])
+        if len(skew):
+            raise FormatError(
+                f"tensor {skew[0]} is {array[skew[0]].tolist()}, not symmetric; only symmetric "
+                "tensors can be written"
+            )
+        return array.reshape(-1, 4)[:, [0, 1, 3]]
+    return _of_few_columns("the solution", array)
 
 
 def _field(name: str, values: ArrayLike) -> Array:
@@ -125,20 +96,27 @@ def _field(name: str, values: ArrayLike) -> Array:
         raise FormatError(
             f'{name!r} cannot be the name of a field; leave out " $ & < > and blanks at its ends'
         )
-    try:
-        array = np.asarray(values)
-    except ValueError as error:
-        raise FormatError(f"field {name!r} is not an array: {error}") from None
-    if array.dtype.kind not in "fiub":
-        raise FormatError(
-            f"field {name!r} has values of type {array.dtype}; only real numbers can be written"
-        )
-    if array.ndim == 2 and array.shape[1] == 1:
-        array = array[:, 0]
-    if array.ndim not in (1, 2) or (array.ndim == 2 and array.shape[1] not in (2, 3)):
-        raise FormatError(
-            f"field {name!r} has shape {array.shape}; it must be (n,), (n, 2) or (n, 3)"
-        )
+    array = _of_few_columns(f"field {name!r}", _real(f"field {name!r}", values))
     if array.dtype.kind == "b":
         return array.astype(np.uint8)
     return array if array.dtype.kind in "iu" else array.astype(np.float64)
+
+
+def _real(what: str, values: ArrayLike) -> Array:
+    try:
+        array = np.asarray(values)
+    except ValueError as error:
+        raise FormatError(f"{what} is not an array: {error}") from None
+    if array.dtype.kind not in "fiub":
+        raise FormatError(
+            f"{what} has values of type {array.dtype}; only real numbers can be written"
+        )
+    return array
+
+
+def _of_few_columns(what: str, array: Array) -> Array:
+    if array.ndim == 2 and array.shape[1] == 1:
+        return array[:, 0]
+    if array.ndim == 1 or (array.ndim == 2 and array.shape[1] in (2, 3)):
+        return array
+    raise FormatError(f"{what} has shape {array.shape}; it must be (n,), (n, 2) or (n, 3)")

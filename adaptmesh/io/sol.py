@@ -45,10 +45,8 @@ def encode(values: Array, *, tensor: bool, place: str, binary: bool) -> bytes:
 
     Three columns that are no tensor are three scalars.
     """
-    if tensor:
-        types = [TENSOR]
-    else:
-        types = {1: [SCALAR], 2: [VECTOR], 3: [SCALAR] * 3}[values.size // max(len(values), 1)]
+    columns = 1 if values.ndim == 1 else values.shape[1]
+    types = [TENSOR] if tensor else {1: [SCALAR], 2: [VECTOR], 3: [SCALAR] * 3}[columns]
     keyword = (place, [len(values), len(types), *types], table(binary, ("f8", values)))
     return (binary_file if binary else text_file)([keyword])
 

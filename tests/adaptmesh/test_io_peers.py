@@ -1,0 +1,292 @@
+"""Our files in the programs that they are for, and theirs here."""
+
+import contextlib
+
+import numpy as np
+import pytest
+
+import metrics
+from adaptmesh import io
+from adaptmesh.mesh import Mesh
+
+NAMES = {"in let": 3, "Größe": 5}
+
+
+def a_mesh():
+    """A 5 x 5 grid in two regions, border and interface constrained."""
+    n = 5
+    x, y = np.meshgrid(np.arange(n), np.arange(n))
+    points = np.stack([x.ravel(), y.ravel()], axis=1) / 3
+    low = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+    triangles = np.stack([low, low + 1, low + n + 1, low, low + n + 1, low + n], axis=1)
+    triangles = triangles.reshape(-1, 3)[::-1]  # in no order that a program would choose
+    i = np.arange(n - 1)
+    sides = [(i, 3), (i * n + n - 1, 5), (i + n * (n - 1), 0), (i * n, 0), (i * n + 2, 8)]
+    edges = [[a, a + (1 if tag in (3, 0) and a in b else n)] for b, tag in sides for a in b]
+    edges = [[a, a + step] for (b, _), step in zip(sides, (1, n, 1, n, n), strict=True) for a in b]
+    tags = [tag for b, tag in sides for _ in b]
+    regions = np.where(points[triangles].mean(axis=1)[:, 0] < 2 / 3, 1, 2)
+    return Mesh(points, triangles, regions, edges, tags, NAMES, {"left": 1, "right": 2})
+
+
+def cell_set(cells, tags):
+    return {
+        (tuple(sorted(c)), t) for c, t in zip(np.asarray(cells).tolist(), list(tags), strict=True)
+    }
+
+
+def assert_same_up_to_order(first, second):
+    """The same points, and the same triangles and edges in another order."""
+    np.testing.assert_array_equal(first.points, second.points)
+    assert cell_set(first.triangles, first.regions) == cell_set(second.triangles, second.regions)
+    assert cell_set(first.edges, first.edge_tags) == cell_set(second.edges, second.edge_tags)
+
+
+# ------------------------------------------------------------------------------------------- Gmsh
+
+
+@pytest.fixture
+def gmsh():
+    module = pytest.importorskip("gmsh", exc_type=ImportError)
+    module.initialize(interruptible=False)
+    module.option.setNumber("General.Terminal", 0)
+    yield module
+    module.finalize()
+
+
+@pytest.mark.parametrize("version", ["4.1", "2.2"])
+@pytest.mark.parametrize("binary", [True, False])
+def test_gmsh_opens_names_elements_and_views(tmp_path, gmsh, version, binary):
+    mesh = a_mesh()
+    u, q = mesh.points[:, 0] ** 2, np.arange(32.0)
+    metric = np.tile([4.0, 1.0, 9.0], (25, 1))
+    path = str(tmp_path / "a.msh")
+    io.write(path, mesh, u=u, v=mesh.points, q=q, metric=metric, version=version, binary=binary)
+    gmsh.open(path)
+
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    np.testing.assert_array_equal(coordinates.reshape(-1, 3)[np.argsort(tags), :2], mesh.points)
+    groups = {
+        (dim, tag, gmsh.model.getPhysicalName(dim, tag)): sum(
+            len(gmsh.model.mesh.getElements(dim, e)[1][0])
+            for e in gmsh.model.getEntitiesForPhysicalGroup(dim, tag)
+        )
+        for dim, tag in gmsh.model.getPhysicalGroups()
+    }
+    assert groups == {
+        (1, 3, "in let"): 4, (1, 5, "Größe"): 4, (1, 8, ""): 4,
+        (2, 1, "left"): 16, (2, 2, "right"): 16,
+    }  # fmt: skip
+    views = {gmsh.view.option.getString(t, "Name"): t for t in gmsh.view.getTags()}
+    assert views.keys() == {"u", "v", "q", "metric"}
+    kind, at, values, *_ = gmsh.view.getModelData(views["u"], 0)
+    assert kind == "NodeData"
+    np.testing.assert_array_equal(np.ravel(values)[np.argsort(at)], u)
+    kind, at, values, *_ = gmsh.view.getModelData(views["q"], 0)
+    assert kind == "ElementData"
+    by_element = dict(zip(at.tolist(), np.ravel(values), strict=True))
+    for element, value in by_element.items():
+        _, nodes, _, _ = gmsh.model.mesh.getElement(element)
+        assert sorted(nodes - 1) == sorted(mesh.triangles[int(value)])
+    assert len(gmsh.view.getModelData(views["metric"], 0)[2][0]) == 9
+
+
+@pytest.mark.parametrize("version", [4.1, 2.2])
+@pytest.mark.parametrize("binary", [1, 0])
+def test_what_gmsh_saves_is_read(tmp_path, gmsh, version, binary):
+    io.write(tmp_path / "a.msh", a_mesh())
+    gmsh.open(str(tmp_path / "a.msh"))
+    gmsh.option.setNumber("Mesh.MshFileVersion", version)
+    gmsh.option.setNumber("Mesh.Binary", binary)
+    # without SaveAll edges of no group would be left out, with it 2.2 would lose the groups
+    gmsh.option.setNumber("Mesh.SaveAll", int(version > 4))
+    gmsh.write(str(tmp_path / "b.msh"))
+    back = io.read(tmp_path / "b.msh")
+    expected = a_mesh()
+    if version < 4:
+        kept = expected.edge_tags > 0
+        expected = Mesh(
+            expected.points, expected.triangles, expected.regions,
+            expected.edges[kept], expected.edge_tags[kept],
+        )  # fmt: skip
+    assert_same_up_to_order(back, expected)
+    assert dict(back.names) == NAMES
+    assert dict(back.region_names) == {"left": 1, "right": 2}
+
+
+def test_a_mesh_of_gmsh_is_read(tmp_path, gmsh):
+    disk = gmsh.model.occ.addDisk(0, 0, 0, 1, 1)
+    gmsh.model.occ.synchronize()
+    gmsh.model.addPhysicalGroup(2, [disk], 4, "disk")
+    gmsh.model.addPhysicalGroup(1, [1], 9, "rim")
+    gmsh.model.mesh.generate(2)
+    for binary in (0, 1):
+        gmsh.option.setNumber("Mesh.Binary", binary)
+        gmsh.write(str(tmp_path / "disk.msh"))
+        mesh = io.read(tmp_path / "disk.msh")
+        assert mesh.areas.sum() == pytest.approx(np.pi, rel=0.01)
+        assert set(mesh.regions) == {4}
+        radius = np.hypot(*mesh.points[mesh.edges_named("rim")].reshape(-1, 2).T)
+        np.testing.assert_allclose(radius, 1)
+
+
+# ------------------------------------------------------------------------------------------ Medit
+
+
+@pytest.mark.parametrize("suffix", ["", "b"])
+def test_mmg_reads_mesh_and_metric(tmp_path, suffix):
+    mmgpy = pytest.importorskip("mmgpy")
+    mesh = a_mesh()
+    metric = np.random.default_rng(0).random((25, 3)) / 7 + [1, 0, 1]
+    io.write(tmp_path / f"a.mesh{suffix}", mesh, metric=metric)
+    theirs = mmgpy.MmgMesh2D(str(tmp_path / f"a.mesh{suffix}"))
+    np.testing.assert_array_equal(theirs.get_vertices(), mesh.points)
+    triangles, regions = theirs.get_triangles_with_refs()
+    np.testing.assert_array_equal(triangles, mesh.triangles)
+    np.testing.assert_array_equal(regions, mesh.regions)
+    edges, tags = theirs.get_edges_with_refs()
+    np.testing.assert_array_equal(edges, mesh.edges)
+    np.testing.assert_array_equal(tags, mesh.edge_tags)
+    theirs.load_sol(str(tmp_path / f"a.sol{suffix}"))
+    np.testing.assert_array_equal(theirs.get_field("tensor"), metric)
+
+    theirs.save(str(tmp_path / f"b.mesh{suffix}"))
+    back = io.read(tmp_path / f"b.mesh{suffix}")
+    np.testing.assert_allclose(back.points, mesh.points, rtol=1e-14)
+    assert cell_set(back.edges, back.edge_tags) == cell_set(mesh.edges, mesh.edge_tags)
+    assert cell_set(back.triangles, back.regions) == cell_set(mesh.triangles, mesh.regions)
+
+
+def test_solutions_of_mmg_are_read(tmp_path):
+    # text only: of tensors Mmg puts line breaks between the bytes of a .solb
+    mmgpy = pytest.importorskip("mmgpy")
+    metric = np.random.default_rng(0).random((25, 3)) / 7 + [1, 0, 1]
+    io.write(tmp_path / "a.mesh", a_mesh(), metric=metric)
+    theirs = mmgpy.MmgMesh2D(str(tmp_path / "a.mesh"))
+    theirs.load_sol(str(tmp_path / "a.sol"))
+    theirs.save_sol(str(tmp_path / "b.sol"))
+    np.testing.assert_allclose(io.read_sol(tmp_path / "b.sol"), metric, rtol=1e-14)
+
+
+# -------------------------------------------------------------------------------------------- VTK
+
+
+def test_pyvista_shows_everything(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    mesh = a_mesh()
+    metric = metrics.tensor.pack(np.tile([4.0, 1.0, 9.0], (25, 1)))
+    io.write(tmp_path / "a.vtu", mesh, v=mesh.points, q=np.arange(32.0), metric=metric)
+    grid = pyvista.read(tmp_path / "a.vtu")
+    np.testing.assert_array_equal(grid.points[:, :2], mesh.points)
+    np.testing.assert_array_equal(grid.cells_dict[5], mesh.triangles)
+    np.testing.assert_array_equal(grid.cells_dict[3], mesh.edges)
+    np.testing.assert_array_equal(grid["regions"], [*mesh.regions, *[0] * 20])
+    np.testing.assert_array_equal(grid["edge_tags"], [*[0] * 32, *mesh.edge_tags])
+    np.testing.assert_array_equal(grid["v"][:, :2], mesh.points)
+    assert grid["v"].shape == (25, 3)
+    assert grid["metric"][0].reshape(3, 3).tolist() == [[4, 1, 0], [1, 9, 0], [0, 0, 0]]
+    assert grid.field_data["edge_tags: in let"].tolist() == [3]
+    assert grid.field_data["regions: right"].tolist() == [2]
+
+
+@pytest.mark.parametrize("mode", ["Ascii", "Binary", "Appended"])
+@pytest.mark.parametrize("compressor", ["NONE", "ZLIB", "LZMA"])
+def test_what_vtk_saves_is_read(tmp_path, mode, compressor):
+    pyvista = pytest.importorskip("pyvista")
+    vtk = pytest.importorskip("vtkmodules.vtkIOXML")
+    mesh = Mesh(
+        *[getattr(a_mesh(), f) for f in ("points", "triangles", "regions", "edges", "edge_tags")],
+        names={'"a" & <b> 50 %': 3},
+        region_names={"left": 1},
+    )
+    metric = np.random.default_rng(0).random((25, 3)) / 7 + [1, 0, 1]
+    fields = {"u": np.full(25, np.nan), "v": mesh.points, "q": np.arange(32)}
+    io.write(tmp_path / "a.vtu", mesh, metric=metric, **fields)
+    grid = pyvista.read(tmp_path / "a.vtu")
+    for raw, header, order in ((0, 32, 0), (1, 64, 1)):
+        writer = vtk.vtkXMLUnstructuredGridWriter()
+        writer.SetInputData(grid)
+        writer.SetFileName(str(tmp_path / "b.vtu"))
+        getattr(writer, f"SetDataModeTo{mode}")()
+        writer.SetCompressorType(getattr(writer, compressor))
+        writer.SetEncodeAppendedData(1 - raw)
+        writer.SetHeaderType(header)
+        writer.SetByteOrder(order)
+        writer.SetBlockSize(256)
+        writer.Write()
+        back = io.read(tmp_path / "b.vtu")
+        assert_same_up_to_order(back, mesh)
+        np.testing.assert_array_equal(back.triangles, mesh.triangles)
+        assert dict(back.names) == dict(mesh.names)
+        for name, values in io.read_fields(tmp_path / "b.vtu").items():
+            np.testing.assert_array_equal(values, {**fields, "metric": metric}[name])
+
+
+# ----------------------------------------------------------------------------------------- meshio
+
+MESHIO = {
+    "vtu": ("a.vtu", {}),
+    "msh41": ("a.msh", {}),
+    "msh41 text": ("a.msh", {"binary": False}),
+    "msh22": ("a.msh", {"version": "2.2"}),
+    "mesh": ("a.mesh", {}),
+}
+
+
+@pytest.mark.parametrize("way", MESHIO)
+def test_meshio_reads_our_meshes(tmp_path, way):
+    # not the names of .meshb: meshio stops at the keyword ReferenceStrings
+    meshio = pytest.importorskip("meshio")
+    name, options = MESHIO[way]
+    mesh = a_mesh()
+    io.write(tmp_path / name, mesh, **options)
+    theirs = meshio.read(tmp_path / name)
+    points = {tuple(p) for p in theirs.points[:, :2].tolist()}
+    assert points == {tuple(p) for p in mesh.points.tolist()}
+    corners = {
+        tuple(sorted(map(tuple, theirs.points[t, :2].tolist())))
+        for block in theirs.cells
+        if block.type == "triangle"
+        for t in block.data
+    }
+    assert corners == {tuple(sorted(map(tuple, t))) for t in mesh.points[mesh.triangles].tolist()}
+    if name == "a.msh":
+        assert theirs.field_data["in let"].tolist() == [3, 1]
+        assert theirs.field_data["right"].tolist() == [2, 2]
+
+
+@pytest.mark.parametrize("options", [{}, {"binary": False}, {"version": "2.2"}])
+def test_meshio_never_mistakes_our_fields(tmp_path, capsys, options):
+    # it takes values in the order of the file, whatever tags they bear; where our order of the
+    # nodes is not that of the tags, it reads the text and gives up on the bytes
+    meshio = pytest.importorskip("meshio")
+    mesh = a_mesh()
+    io.write(tmp_path / "a.msh", mesh, u=mesh.points[:, 0] + 100 * mesh.points[:, 1], **options)
+    with contextlib.suppress(SystemExit):
+        theirs = meshio.read(tmp_path / "a.msh")
+        x, y, _ = theirs.points.T
+        np.testing.assert_allclose(theirs.point_data["u"], x + 100 * y)
+
+
+@pytest.mark.parametrize("name", ["b.vtu", "b.mesh", "b.meshb", "b.msh"])
+def test_what_meshio_writes_is_read(tmp_path, name):
+    meshio = pytest.importorskip("meshio")
+    mesh = a_mesh()
+    cells = [("triangle", mesh.triangles), ("line", mesh.edges)]
+    refs = [mesh.regions, mesh.edge_tags]
+    data = {"b.msh": {"gmsh:physical": refs, "gmsh:geometrical": refs}, "b.vtu": {}}
+    u = np.random.default_rng(0).random(25)
+    # the points are given with z, for meshio warns if it has to add it
+    points = mesh.points if "mesh" in name else np.column_stack([mesh.points, np.zeros(25)])
+    point_data = {} if "mesh" in name else {"u": u}
+    theirs = meshio.Mesh(points, cells, point_data, data.get(name, {"medit:ref": refs}))
+    options = {"file_format": "gmsh22"} if name == "b.msh" else {}
+    theirs.write(tmp_path / name, **options)
+    back = io.read(tmp_path / name)
+    for part in ("points", "triangles", "edges"):
+        np.testing.assert_array_equal(getattr(back, part), getattr(mesh, part))
+    if name != "b.vtu":
+        np.testing.assert_array_equal(back.regions, mesh.regions)
+        np.testing.assert_array_equal(back.edge_tags, mesh.edge_tags)
+    if point_data:
+        np.testing.assert_array_equal(io.read_fields(tmp_path / name)["u"], u)
