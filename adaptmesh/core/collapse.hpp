@@ -34,7 +34,7 @@ class Collapser {
             if (p == to || q == to) continue;
             const double quality = MetricMesh::quality(target, mesh_.vertices[p], mesh_.vertices[q]);
             worst_new = std::min(worst_new, quality);
-            if (quality < options_.least_quality || !mesh_.is_positive(to, p, q)) return false;
+            if (!mesh_.is_positive(to, p, q)) return false;
             if (mesh_.length(to, p) > options_.longest_new) return false;
         }
         if (worst_new < options_.good_quality && worst_new < options_.quality_kept * worst_old)
