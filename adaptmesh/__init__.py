@@ -5,7 +5,7 @@ from .domain import Domain
 from .domain_io import read_domain
 from .errors import AdaptmeshError, BudgetError, DomainError, FormatError, MetricError
 from .generate import generate, predict
-from .io import read, read_sol, write, write_sol
+from .io import read, read_fields, read_sol, write, write_sol
 from .mesh import Mesh
 from .plot import plot
 from .report import Report, measure
@@ -32,6 +32,7 @@ __all__ = [
     "predict",
     "read",
     "read_domain",
+    "read_fields",
     "read_sol",
     "validate",
     "write",

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import metrics
 import numpy as np
+
+import metrics
 from metrics import ControlSpace
 
 from .domain import Domain

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from metrics import ControlSpace
 from numpy.typing import NDArray
+
+from metrics import ControlSpace
 
 from . import _core
 from .domain import Domain

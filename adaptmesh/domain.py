@@ -99,7 +99,9 @@ class Domain:
         """
         if hasattr(outer, "__geo_interface__"):
             if len(holes):
-                raise DomainError("holes belong in the polygon: give either a shapely polygon or rings")
+                raise DomainError(
+                    "give a shapely polygon with its own holes, or rings, not both"
+                )
             rings = _rings_of(outer.__geo_interface__)
         else:
             rings = [outer, *holes]
@@ -157,7 +159,9 @@ class Domain:
             a, b = self._segment(i), self._segment(j)
             if kind == "crossing_segments":
                 return f"{a} and {b} cross at {place}: put a point there and divide both"
-            return f"{a} and {b} overlap near {place}: keep one of them, divided at the points on it"
+            return (
+                f"{a} and {b} overlap near {place}: keep one, divided at the points on it"
+            )
         messages = {
             "all_collinear": "all points lie on one line: there is nothing to mesh",
             "duplicate_points": f"points {i} and {j} are the same, {place}: keep one of them",
@@ -168,8 +172,8 @@ class Domain:
             "hole_on_segment": f"hole {i} at {place} lies on a segment: move it into the hole",
             "region_seed_outside": f"the point of {self._seed(i)} at {place} is not inside the "
             "domain: move or remove it",
-            "region_seed_on_segment": f"the point of {self._seed(i)} at {place} lies on a segment: move it "
-            "into the region",
+            "region_seed_on_segment": f"the point of {self._seed(i)} at {place} lies on a "
+            "segment: move it into the region",
             "two_seeds_one_region": f"{self._seed(i)} and {self._seed(j)} are the same part of the "
             "domain: remove one, or separate them by segments",
             "point_outside": f"point {i} at {place} is on no segment and outside the domain: "
@@ -231,7 +235,9 @@ def _checked_segments(segments: ArrayLike, points: Floats) -> Ints:
     if len(bad):
         i = bad[0]
         x, y = points[out[i, 0]]
-        raise DomainError(f"segment {i} has no length: both its ends are at ({x:g}, {y:g}); remove it")
+        raise DomainError(
+            f"segment {i} has no length: its ends are both ({x:g}, {y:g}); remove it"
+        )
     return _read_only(out)
 
 
@@ -240,7 +246,9 @@ def _checked_regions(regions: Mapping[str, ArrayLike]) -> tuple[Mapping[str, int
     seeds, owners = [], []
     for name, where in regions.items():
         numbers[str(name)] = len(numbers) + 1
-        points = _checked_points(np.atleast_2d(np.asarray(where)), f"region {name!r} point", least=1)
+        points = _checked_points(
+            np.atleast_2d(np.asarray(where)), f"region {name!r} point", least=1
+        )
         seeds.append(points)
         owners += [numbers[str(name)]] * len(points)
     all_seeds = np.concatenate(seeds) if seeds else np.empty((0, 2))

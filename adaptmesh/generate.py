@@ -6,8 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import metrics
 import numpy as np
+
+import metrics
 from metrics import ControlSpace
 
 from . import _core

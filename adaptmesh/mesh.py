@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,8 +19,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 
-def _frozen(array: ArrayLike, dtype: type, shape: tuple[int, ...]) -> NDArray[np.generic]:
-    out = np.array(array, dtype=dtype, order="C").reshape(shape)
+def _frozen(array: ArrayLike, dtype: type, shape: tuple[int, ...]) -> NDArray[Any]:
+    out: NDArray[Any] = np.array(array, dtype=dtype, order="C").reshape(shape)
     out.flags.writeable = False
     return out
 
@@ -87,7 +87,8 @@ class Mesh:
         sides = np.sort(np.concatenate([t[:, [1, 2]], t[:, [2, 0]], t[:, [0, 1]]]), axis=1)
         keys = np.unique(sides[:, 0].astype(np.int64) * len(self.points) + sides[:, 1])
         n = max(len(self.points), 1)
-        return np.stack([keys // n, keys % n], axis=1).astype(np.int32)
+        out: Ints = np.stack([keys // n, keys % n], axis=1).astype(np.int32)
+        return out
 
     @cached_property
     def areas(self) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 
 import numpy as np
@@ -34,11 +35,11 @@ def domain_of_mesh(mesh: Mesh) -> Domain:
     tolerance = STRAIGHT * float(np.ptp(mesh.points, axis=0).max())
     for chain, tag in _chains(edges, tags, _sides(mesh, edges)):
         corners = _corners(mesh.points, chain, tolerance)
-        segments += list(zip(corners[:-1], corners[1:], strict=True))
+        segments += list(itertools.pairwise(corners))
         segment_tags += [tag] * (len(corners) - 1)
 
     used, renumbered = np.unique(np.array(segments), return_inverse=True)
-    points, pairs = mesh.points[used], renumbered.reshape(-1, 2)
+    points, pairs = mesh.points[used], renumbered.reshape(-1, 2).astype(np.int32)
     tag_of = np.array(segment_tags)
     return Domain(
         points,
@@ -71,7 +72,7 @@ def _triangles_beside(triangles: Ints, edges: Ints, n_points: int) -> tuple[Ints
 
 
 def _with_border(mesh: Mesh) -> tuple[Ints, Ints]:
-    """The constrained edges and their tags; border edges that are not among them come with tag 0."""
+    """The constrained edges and their tags; other border edges come with tag 0."""
     n = len(mesh.points)
     halves, _ = _half_edges(mesh.triangles)
     ordered = np.sort(halves, axis=1).astype(np.int64)
@@ -161,10 +162,7 @@ def _hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    filled, labels, *_ = _core.triangulate(
-        points, segments.astype(np.int32), np.empty((0, 2)), np.empty((0, 2)), False
-    )
-    del labels
+    filled, *_ = _core.triangulate(points, segments, np.empty((0, 2)), np.empty((0, 2)), False)
     lower, upper = np.sort(segments, axis=1).T.astype(np.int64)
     halves, owner = _half_edges(filled)
     ordered = np.sort(halves, axis=1).astype(np.int64)
@@ -182,7 +180,8 @@ def _hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
     by_area = np.argsort(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])[::-1]
     _, first = np.unique(part[by_area], return_index=True)
     centres = p[by_area[first]].mean(axis=1)
-    return centres[~_covered(mesh, centres)]
+    out: Floats = centres[~_covered(mesh, centres)]
+    return out
 
 
 def _covered(mesh: Mesh, places: Floats) -> NDArray[np.bool_]:

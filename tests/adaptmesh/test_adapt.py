@@ -1,13 +1,25 @@
 """Remeshing for a nodal metric: the domain, its names and its regions stay."""
 
-import adaptmesh as am
 import numpy as np
 import pytest
+
+import adaptmesh as am
 
 
 @pytest.fixture
 def plate():
-    points = [(0, 0), (4, 0), (4, 2), (0, 2), (2, 0), (2, 2), (0.5, 0.5), (1, 0.5), (1, 1), (0.5, 1)]
+    points = [
+        (0, 0),
+        (4, 0),
+        (4, 2),
+        (0, 2),
+        (2, 0),
+        (2, 2),
+        (0.5, 0.5),
+        (1, 0.5),
+        (1, 1),
+        (0.5, 1),
+    ]
     segments = [(0, 4), (4, 1), (1, 2), (2, 5), (5, 3), (3, 0), (4, 5)]
     segments += [(6, 7), (7, 8), (8, 9), (9, 6)]
     return am.Domain(

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from adaptmesh import Domain, DomainError
 
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
@@ -54,7 +55,7 @@ def test_regions_are_numbered_in_the_order_given():
 
 
 def test_one_region_may_have_several_parts():
-    points = SQUARE + [(0.3, 0), (0.3, 1), (0.7, 0), (0.7, 1)]
+    points = [*SQUARE, (0.3, 0), (0.3, 1), (0.7, 0), (0.7, 1)]
     segments = [(0, 4), (4, 6), (6, 1), (1, 2), (2, 7), (7, 5), (5, 3), (3, 0), (4, 5), (6, 7)]
     domain = Domain(points, segments, regions={"steel": [(0.1, 0.5), (0.9, 0.5)]})
     p = domain.points[domain.triangles].mean(axis=1)
