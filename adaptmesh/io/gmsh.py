@@ -37,6 +37,7 @@ from ..errors import FormatError
 from .content import Array, Content, refuse_cells
 from .located import located
 from .records import BinaryCursor, TextCursor, table
+from .spatial import plane_fields, spatial, spatial_tensor, take_metric
 
 NODES_OF_TYPE = {1: 2, 2: 3, 15: 1}
 """Vertices of the element types that are read: edges, triangles, lone vertices."""
@@ -248,7 +249,7 @@ def _together(file: Sections) -> Content:
         edges.physical,
         names=file.ours.get("edges", names),
         region_names=file.ours.get("regions", regions),
-        metric=_packed(point_fields),
+        metric=take_metric(point_fields),
         point_fields=point_fields,
         triangle_fields={
             name: _field(name, view, triangles.tags, plane)
@@ -295,16 +296,6 @@ def _field(name: str, view: tuple[Array, Array], tags: Array, plane: object) -> 
     return out[:, 0] if out.shape[1] == 1 else out
 
 
-def _packed(fields: dict[str, Array]) -> Array | None:
-    """Take ``metric`` out if it is a plane symmetric tensor."""
-    tensor = fields.get("metric")
-    if tensor is None or tensor.ndim != 2 or tensor.shape[1] != 9:
-        return None
-    if (tensor[:, 1] != tensor[:, 3]).any() or tensor[:, [2, 5, 6, 7]].any():
-        return None
-    return fields.pop("metric")[:, [0, 1, 4]]
-
-
 # ---------------------------------------------------------------------------------------- writing
 
 
@@ -328,9 +319,7 @@ def encode(content: Content, *, version: str = "4.1", binary: bool = True) -> by
     for name, values in content.point_fields.items():
         parts.append(section("NodeData", _view(name, values, nodes, binary), binary))
     if content.metric is not None:
-        m11, m12, m22 = content.metric.T
-        zero = np.zeros(len(m11))
-        tensor = np.stack([m11, m12, zero, m12, m22, zero, zero, zero, zero], axis=1)
+        tensor = spatial_tensor(content.metric)
         parts.append(section("NodeData", _view("metric", tensor, nodes, binary), binary))
     for name, values in content.triangle_fields.items():
         parts.append(section("ElementData", _view(name, values, triangles, binary), binary))
@@ -355,8 +344,7 @@ def _names_sections(content: Content) -> list[bytes]:
         lines += [f'{dim} {tag} "{name}"\n' for tag, name in sorted(shown.items())]
         if {name: tag for tag, name in shown.items()} != names:
             ours[key] = dict(names)
-    fields = {**content.point_fields, **content.triangle_fields}
-    plane = [name for name, values in fields.items() if values.ndim == 2 and values.shape[1] == 2]
+    plane = plane_fields(content)
     if plane:
         ours["plane_fields"] = plane
     parts = []
@@ -382,8 +370,6 @@ def _view(name: str, values: Array, order: Array, binary: bool) -> bytes:
 
     Each row bears its tag, so any order would do for Gmsh; but meshio does not look at the tags.
     """
-    rows = values.reshape(len(values), -1)[order]
-    if rows.shape[1] == 2:
-        rows = np.column_stack([rows, np.zeros(len(rows))])
+    rows = spatial(values.reshape(len(values), -1)[order])
     header = f'1\n"{name}"\n1\n0\n3\n0\n{rows.shape[1]}\n{len(rows)}\n'.encode()
     return header + table(binary, ("i4", order + 1), ("f8", rows))

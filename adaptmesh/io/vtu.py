@@ -32,6 +32,7 @@ import numpy as np
 
 from ..errors import FormatError
 from .content import Array, Content, check_vertices, refuse_cells
+from .spatial import plane_fields, spatial, spatial_tensor, take_metric
 from .vtu_arrays import TYPES, VtuArrays
 
 if TYPE_CHECKING:
@@ -54,15 +55,15 @@ _TYPE_NAMES = {dtype: name for name, dtype in TYPES.items()}
 def encode(content: Content) -> bytes:
     """The bytes of a `.vtu` file."""
     m, k = len(content.triangles), len(content.edges)
-    point_data = {name: _vector(a) for name, a in content.point_fields.items()}
+    point_data = {name: spatial(a) for name, a in content.point_fields.items()}
     if content.metric is not None:
-        point_data["metric"] = _tensor(content.metric)
+        point_data["metric"] = spatial_tensor(content.metric)
     cell_data = {
         "regions": np.concatenate([content.regions, np.zeros(k, np.int32)]),
         "edge_tags": np.concatenate([np.zeros(m, np.int32), content.edge_tags]),
     }
     for name, values in content.triangle_fields.items():
-        cell_data[name] = _padded(_vector(values), k)
+        cell_data[name] = _padded(spatial(values), k)
     cells = {
         "connectivity": np.concatenate([content.triangles.ravel(), content.edges.ravel()]),
         "offsets": np.concatenate([3 * np.arange(1, m + 1), 3 * m + 2 * np.arange(1, k + 1)]),
@@ -90,31 +91,16 @@ def encode(content: Content) -> bytes:
     return "\n".join(lines).encode()
 
 
-def _vector(values: Array) -> Array:
-    if values.ndim == 2 and values.shape[1] == 2:
-        return np.column_stack([values, np.zeros(len(values), values.dtype)])
-    return values
-
-
-def _tensor(metric: Array) -> Array:
-    out = np.zeros((len(metric), 9))
-    out[:, [0, 1, 4]] = metric
-    out[:, 3] = metric[:, 1]
-    return out
-
-
 def _padded(values: Array, count: int) -> Array:
     nothing = np.nan if values.dtype.kind == "f" else 0
     return np.concatenate([values, np.full((count, *values.shape[1:]), nothing, values.dtype)])
 
 
 def _field_data(content: Content) -> list[str]:
-    fields = {**content.point_fields, **content.triangle_fields}
-    plane = [name for name, values in fields.items() if values.ndim == 2 and values.shape[1] == 2]
     numbers = {
         **{f"{_EDGE}{_escaped(name)}": tag for name, tag in content.names.items()},
         **{f"{_REGION}{_escaped(name)}": tag for name, tag in content.region_names.items()},
-        **{f"{_COLUMNS}{name}": 2 for name in plane},
+        **{f"{_COLUMNS}{name}": 2 for name in plane_fields(content)},
     }
     return [
         _data_array(name, np.array([number], np.int32), 'NumberOfTuples="1" ')
@@ -210,9 +196,7 @@ def _piece(piece: Element, arrays: VtuArrays) -> Content:
         _same_length(f"point array {name!r}", len(values), "NumberOfPoints", piece)
     for name, values in cell_data.items():
         _same_length(f"cell array {name!r}", len(values), "NumberOfCells", piece)
-    metric = _packed(point_data.get("metric"))
-    if metric is not None:
-        del point_data["metric"]
+    metric = take_metric(point_data)
     return Content(
         points,
         triangles,
@@ -266,15 +250,6 @@ def _tags(cell_data: dict[str, Array], name: str, rows: Array) -> Array:
     return values[rows]
 
 
-def _packed(tensor: Array | None) -> Array | None:
-    """(m11, m12, m22) of a plane symmetric 3x3 tensor; None if it is something else."""
-    if tensor is None or tensor.ndim != 2 or tensor.shape[1] != 9:
-        return None
-    if (tensor[:, 1] != tensor[:, 3]).any() or tensor[:, [2, 5, 6, 7]].any():
-        return None
-    return tensor[:, [0, 1, 4]].astype(np.float64)
-
-
 def _joined(pieces: list[Content]) -> Content:
     """One content of several pieces: vertices of later ones count on."""
     first = pieces[0]
@@ -285,6 +260,8 @@ def _joined(pieces: list[Content]) -> Content:
         check_vertices("edge", p.edges, len(p.points))
     shifts = np.cumsum([0, *(len(p.points) for p in pieces[:-1])])
     metrics = [p.metric for p in pieces if p.metric is not None]
+    if len(metrics) not in (0, len(pieces)):
+        raise FormatError("array 'metric' is not alike in all pieces of the file")
     return Content(
         np.concatenate([p.points for p in pieces]),
         np.concatenate([p.triangles + s for p, s in zip(pieces, shifts, strict=True)]),
@@ -293,17 +270,17 @@ def _joined(pieces: list[Content]) -> Content:
         np.concatenate([p.edge_tags for p in pieces]),
         point_fields=_joined_fields([p.point_fields for p in pieces]),
         triangle_fields=_joined_fields([p.triangle_fields for p in pieces]),
-        metric=np.concatenate(metrics) if len(metrics) == len(pieces) else None,
+        metric=np.concatenate(metrics) if metrics else None,
     )
 
 
 def _joined_fields(pieces: list[dict[str, Array]]) -> dict[str, Array]:
-    out = {}
-    for name, values in pieces[0].items():
-        if any(name not in p or p[name].shape[1:] != values.shape[1:] for p in pieces):
-            raise FormatError(f"array {name!r} is not alike in all pieces of the file")
-        out[name] = np.concatenate([p[name] for p in pieces])
-    return out
+    shapes = [{name: values.shape[1:] for name, values in piece.items()} for piece in pieces]
+    for shape in shapes[1:]:
+        differing = dict(set(shape.items()) ^ set(shapes[0].items()))
+        if differing:
+            raise FormatError(f"array {min(differing)!r} is not alike in all pieces of the file")
+    return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
 
 
 def _take_names(content: Content, grid: Element, arrays: VtuArrays) -> None:

@@ -196,6 +196,19 @@ def test_vtu_several_pieces(file):
     assert mesh.triangles.tolist() == [*TRIANGLES, [4, 5, 6], [4, 6, 7]]
 
 
+@pytest.mark.parametrize("tensor", [0, 1])
+def test_vtu_pieces_with_different_arrays(file, tensor):
+    columns = (("1", 1), ("9", 9))[tensor]
+    data = (
+        f'<PointData><DataArray type="Int8" Name="metric" NumberOfComponents="{columns[0]}">'
+        f"{words([[0] * columns[1]] * 4)}</DataArray></PointData>"
+    )
+    for first, second in (("", data), (data, "")):
+        piece = vtu(data=second).split("<UnstructuredGrid>")[1].split("</UnstructuredGrid>")[0]
+        with pytest.raises(FormatError, match="'metric' is not alike in all pieces"):
+            io.read(file(".vtu", vtu(data=first, piece=piece)))
+
+
 @pytest.mark.parametrize("header", ["UInt32", "UInt64"])
 @pytest.mark.parametrize("order", ["<", ">"])
 @pytest.mark.parametrize("compressor", [None, "vtkZLibDataCompressor"])

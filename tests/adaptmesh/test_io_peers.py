@@ -12,8 +12,8 @@ from adaptmesh.mesh import Mesh
 NAMES = {"in let": 3, "Größe": 5}
 
 
-def a_mesh():
-    """A 5 x 5 grid in two regions, border and interface constrained."""
+def a_mesh(zero=0):
+    """A 5 x 5 grid in two regions, border and interface constrained; `zero` tags the rest."""
     n = 5
     x, y = np.meshgrid(np.arange(n), np.arange(n))
     points = np.stack([x.ravel(), y.ravel()], axis=1) / 3
@@ -21,25 +21,26 @@ def a_mesh():
     triangles = np.stack([low, low + 1, low + n + 1, low, low + n + 1, low + n], axis=1)
     triangles = triangles.reshape(-1, 3)[::-1]  # in no order that a program would choose
     i = np.arange(n - 1)
-    sides = [(i, 3), (i * n + n - 1, 5), (i + n * (n - 1), 0), (i * n, 0), (i * n + 2, 8)]
-    edges = [[a, a + (1 if tag in (3, 0) and a in b else n)] for b, tag in sides for a in b]
+    rest = [(i + n * (n - 1), zero), (i * n, zero)]
+    sides = [(i, 3), (i * n + n - 1, 5), *rest, (i * n + 2, 8)]
     edges = [[a, a + step] for (b, _), step in zip(sides, (1, n, 1, n, n), strict=True) for a in b]
     tags = [tag for b, tag in sides for _ in b]
     regions = np.where(points[triangles].mean(axis=1)[:, 0] < 2 / 3, 1, 2)
     return Mesh(points, triangles, regions, edges, tags, NAMES, {"left": 1, "right": 2})
 
 
-def cell_set(cells, tags):
-    return {
-        (tuple(sorted(c)), t) for c, t in zip(np.asarray(cells).tolist(), list(tags), strict=True)
-    }
+def placed(cells, tags, points):
+    """Each cell as the set of its corners to 12 digits, and its tag."""
+    corners = np.round(points[cells], 12).tolist()
+    return {(frozenset(map(tuple, c)), int(t)) for c, t in zip(corners, tags, strict=True)}
 
 
 def assert_same_up_to_order(first, second):
-    """The same points, and the same triangles and edges in another order."""
-    np.testing.assert_array_equal(first.points, second.points)
-    assert cell_set(first.triangles, first.regions) == cell_set(second.triangles, second.regions)
-    assert cell_set(first.edges, first.edge_tags) == cell_set(second.edges, second.edge_tags)
+    """The same triangles and edges, whatever their numbers and those of the points."""
+    assert len(first.points) == len(second.points)
+    for cells, tags in (("triangles", "regions"), ("edges", "edge_tags")):
+        one, two = (placed(getattr(m, cells), getattr(m, tags), m.points) for m in (first, second))
+        assert one == two
 
 
 # ------------------------------------------------------------------------------------------- Gmsh
@@ -124,7 +125,7 @@ def test_a_mesh_of_gmsh_is_read(tmp_path, gmsh):
         gmsh.option.setNumber("Mesh.Binary", binary)
         gmsh.write(str(tmp_path / "disk.msh"))
         mesh = io.read(tmp_path / "disk.msh")
-        assert mesh.areas.sum() == pytest.approx(np.pi, rel=0.01)
+        assert mesh.areas.sum() == pytest.approx(np.pi, rel=0.02)
         assert set(mesh.regions) == {4}
         radius = np.hypot(*mesh.points[mesh.edges_named("rim")].reshape(-1, 2).T)
         np.testing.assert_allclose(radius, 1)
@@ -152,9 +153,7 @@ def test_mmg_reads_mesh_and_metric(tmp_path, suffix):
 
     theirs.save(str(tmp_path / f"b.mesh{suffix}"))
     back = io.read(tmp_path / f"b.mesh{suffix}")
-    np.testing.assert_allclose(back.points, mesh.points, rtol=1e-14)
-    assert cell_set(back.edges, back.edge_tags) == cell_set(mesh.edges, mesh.edge_tags)
-    assert cell_set(back.triangles, back.regions) == cell_set(mesh.triangles, mesh.regions)
+    assert_same_up_to_order(back, mesh)
 
 
 def test_solutions_of_mmg_are_read(tmp_path):
@@ -215,8 +214,8 @@ def test_what_vtk_saves_is_read(tmp_path, mode, compressor):
         writer.SetBlockSize(256)
         writer.Write()
         back = io.read(tmp_path / "b.vtu")
-        assert_same_up_to_order(back, mesh)
-        np.testing.assert_array_equal(back.triangles, mesh.triangles)
+        for part in ("points", "triangles", "regions", "edges", "edge_tags"):
+            np.testing.assert_array_equal(getattr(back, part), getattr(mesh, part))
         assert dict(back.names) == dict(mesh.names)
         for name, values in io.read_fields(tmp_path / "b.vtu").items():
             np.testing.assert_array_equal(values, {**fields, "metric": metric}[name])
@@ -235,10 +234,11 @@ MESHIO = {
 
 @pytest.mark.parametrize("way", MESHIO)
 def test_meshio_reads_our_meshes(tmp_path, way):
-    # not the names of .meshb: meshio stops at the keyword ReferenceStrings
+    # where it can: it wants a physical group for each edge of a 4.1 file or for none, and stops
+    # at the keyword ReferenceStrings of a .meshb with names
     meshio = pytest.importorskip("meshio")
     name, options = MESHIO[way]
-    mesh = a_mesh()
+    mesh = a_mesh(zero=1)
     io.write(tmp_path / name, mesh, **options)
     theirs = meshio.read(tmp_path / name)
     points = {tuple(p) for p in theirs.points[:, :2].tolist()}
@@ -260,7 +260,7 @@ def test_meshio_never_mistakes_our_fields(tmp_path, capsys, options):
     # it takes values in the order of the file, whatever tags they bear; where our order of the
     # nodes is not that of the tags, it reads the text and gives up on the bytes
     meshio = pytest.importorskip("meshio")
-    mesh = a_mesh()
+    mesh = a_mesh(zero=1)
     io.write(tmp_path / "a.msh", mesh, u=mesh.points[:, 0] + 100 * mesh.points[:, 1], **options)
     with contextlib.suppress(SystemExit):
         theirs = meshio.read(tmp_path / "a.msh")

@@ -1,0 +1,38 @@
+"""Plane arrays as formats of three-dimensional space want them, and back."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .content import Array, Content
+
+
+def spatial(values: Array) -> Array:
+    """Vectors (n, 2) with a third component of zero; anything else as it is."""
+    if values.ndim == 1 or values.shape[1] != 2:
+        return values
+    return np.column_stack([values, np.zeros(len(values), values.dtype)])
+
+
+def plane_fields(content: Content) -> list[str]:
+    """Names of the fields with two columns, which `spatial` changes."""
+    fields = {**content.point_fields, **content.triangle_fields}
+    return [name for name, values in fields.items() if values.ndim == 2 and values.shape[1] == 2]
+
+
+def spatial_tensor(metric: Array) -> Array:
+    """Packed metrics (n, 3) as tensors by row, (n, 9): m11 m12 0  m12 m22 0  0 0 0."""
+    out = np.zeros((len(metric), 9))
+    out[:, [0, 1, 4]] = metric
+    out[:, 3] = metric[:, 1]
+    return out
+
+
+def take_metric(fields: dict[str, Array]) -> Array | None:
+    """Take ``metric`` out of the fields, packed, if it is what `spatial_tensor` gives."""
+    tensor = fields.get("metric")
+    if tensor is None or tensor.ndim != 2 or tensor.shape[1] != 9:
+        return None
+    if (tensor[:, 1] != tensor[:, 3]).any() or tensor[:, [2, 5, 6, 7]].any():
+        return None
+    return fields.pop("metric")[:, [0, 1, 4]].astype(np.float64)
