@@ -99,9 +99,7 @@ class Domain:
         """
         if hasattr(outer, "__geo_interface__"):
             if len(holes):
-                raise DomainError(
-                    "give a shapely polygon with its own holes, or rings, not both"
-                )
+                raise DomainError("give a shapely polygon with its own holes, or rings, not both")
             rings = _rings_of(outer.__geo_interface__)
         else:
             rings = [outer, *holes]
@@ -159,9 +157,7 @@ class Domain:
             a, b = self._segment(i), self._segment(j)
             if kind == "crossing_segments":
                 return f"{a} and {b} cross at {place}: put a point there and divide both"
-            return (
-                f"{a} and {b} overlap near {place}: keep one, divided at the points on it"
-            )
+            return f"{a} and {b} overlap near {place}: keep one, divided at the points on it"
         messages = {
             "all_collinear": "all points lie on one line: there is nothing to mesh",
             "duplicate_points": f"points {i} and {j} are the same, {place}: keep one of them",
@@ -235,9 +231,7 @@ def _checked_segments(segments: ArrayLike, points: Floats) -> Ints:
     if len(bad):
         i = bad[0]
         x, y = points[out[i, 0]]
-        raise DomainError(
-            f"segment {i} has no length: its ends are both ({x:g}, {y:g}); remove it"
-        )
+        raise DomainError(f"segment {i} has no length: its ends are both ({x:g}, {y:g}); remove it")
     return _read_only(out)
 
 
