@@ -19,7 +19,7 @@ from .mesh import Mesh
 
 Progress = Callable[[str, float], None]
 
-PLACEMENTS = ("edges",)
+PLACEMENTS = ("front", "edges")
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,14 @@ class EdgePlacement:
 
     long_edge: float = 1.5
     spacing: float = 0.75
+
+
+@dataclass(frozen=True)
+class FrontPlacement:
+    accept: float = 1.35
+    spacing: float = 0.8
+    target: float = 1.0
+    trials: int = 2
 
 
 @dataclass(frozen=True)
@@ -115,6 +123,8 @@ def generate(
     outline = cut_segments(domain, field, max_vertices)
     mesher = triangulate_outline(domain, outline)
     report("placing points", 0.05)
+    if placement == "front":
+        place_ahead_of_front(mesher, field, FrontPlacement(), max_vertices, expected, report)
     place_along_edges(mesher, field, EdgePlacement(), max_vertices, expected, report)
     optimise(mesher, field, Optimisation(), report)
     report("done", 1.0)
@@ -155,6 +165,22 @@ def triangulate_outline(domain: Domain, outline: Outline) -> _core.Mesher:
         domain.seeds,
         domain.nesting,
     )
+
+
+def place_ahead_of_front(
+    mesher: _core.Mesher,
+    field: ControlSpace,
+    options: FrontPlacement,
+    max_vertices: int,
+    expected: int,
+    report: Progress,
+) -> None:
+    front = mesher.front(options.accept, options.spacing, options.target)
+    while mesher.advance(front):
+        for _ in range(options.trials):
+            front.refine(field(front.wanted()))
+        mesher.insert_ahead(front, field(front.wanted()))
+        report("placing points", min(0.7, 0.05 + 0.65 * mesher.vertex_count / max(expected, 1)))
 
 
 def place_along_edges(

@@ -1,6 +1,7 @@
 // The mesher as Python sees it: stages that work on the mesh in place, and arrays in and out.
 #include "adaptmesh/core/bindings.hpp"
 #include "adaptmesh/core/edges.hpp"
+#include "adaptmesh/core/front.hpp"
 #include "adaptmesh/core/improve.hpp"
 #include "adaptmesh/core/metric_mesh.hpp"
 #include "adaptmesh/core/smooth.hpp"
@@ -100,6 +101,23 @@ class Mesher {
     EdgesToMeasure fresh_edges(double uncut_below) {
         nb::gil_scoped_release release;
         return take_fresh_edges(mesh_, uncut_below);
+    }
+
+    Front front(double accept, double spacing, double target) {
+        FrontOptions options;
+        options.accept = accept, options.spacing = spacing, options.target = target;
+        return Front(mesh_, options);
+    }
+
+    std::size_t advance(Front& front) {
+        nb::gil_scoped_release release;
+        return front.advance(poll_);
+    }
+
+    Index insert_ahead(Front& front, const Tensors& tensors) {
+        expect_rows(tensors.shape(0), front.wanted_count(), "tensors at the wanted points");
+        nb::gil_scoped_release release;
+        return front.insert([&](std::size_t i) { return tensor_in(tensors, i); }, poll_);
     }
 
     Index insert_along_edges(const EdgesToMeasure& edges, double long_edge, double spacing,
@@ -226,6 +244,16 @@ void bind_mesher(nb::module_& m) {
 
     nb::class_<EdgesToMeasure>(m, "EdgesToMeasure").def_ro("sampler", &EdgesToMeasure::sampler);
 
+    nb::class_<Front>(m, "Front", "Builds unit triangles from the constraints inwards.")
+        .def("wanted", [](const Front& front) {
+            const std::size_t n = front.wanted_count();
+            return to_numpy(front.wanted(), {n, 2});
+        })
+        .def("refine", [](Front& front, const Tensors& tensors) {
+            expect_rows(tensors.shape(0), front.wanted_count(), "tensors at the wanted points");
+            front.refine([&](std::size_t i) { return tensor_in(tensors, i); });
+        });
+
     nb::class_<Mesher>(m, "Mesher", "A metric mesh and the stages that improve it, in place.")
         .def(nb::init<const Points&, const Tensors&, const Indices&, const IndexPairs&, const Points&,
                       const Points&, bool>(),
@@ -235,6 +263,10 @@ void bind_mesher(nb::module_& m) {
         .def("fresh_edges", &Mesher::fresh_edges, nb::arg("uncut_below"))
         .def("insert_along_edges", &Mesher::insert_along_edges, nb::arg("edges"),
              nb::arg("long_edge"), nb::arg("spacing"), nb::arg("most_vertices"))
+        .def("front", &Mesher::front, nb::arg("accept"), nb::arg("spacing"), nb::arg("target"),
+             nb::keep_alive<0, 1>())
+        .def("advance", &Mesher::advance, nb::arg("front"))
+        .def("insert_ahead", &Mesher::insert_ahead, nb::arg("front"), nb::arg("tensors"))
         .def("swap", &Mesher::swap)
         .def("swap_worst", &Mesher::swap_worst, nb::arg("below"))
         .def("smooth", &Mesher::smooth)

@@ -1,0 +1,142 @@
+// Points ahead of a front: unit triangles are built on the edges that bound what is done, layer
+// after layer, from the constraints inwards.
+//
+// The front is a list of directed edges; each has a finished triangle (or a constraint) on its right
+// and looks to its left:
+//
+//          c                P
+//         / \              / \         if the triangle (a, b, c) ahead has sides short enough, it is
+//        /   \    or      /   \        accepted and (c, b), (a, c) join the front; else the point P
+//       a --- b          a --- b       that makes a unit triangle is wanted
+//
+// Like the sampler, the front asks in rounds: the place of P depends on the metric at P, so that it
+// is evaluated, for a whole layer at once, and the place found anew.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "adaptmesh/core/metric_mesh.hpp"
+#include "adaptmesh/core/point_inserter.hpp"
+
+namespace adaptmesh {
+
+struct FrontOptions {
+    double accept = 1.35;   // a triangle ahead with no longer side is kept as it is
+    double spacing = 0.8;   // a point nearer than this to a vertex is refused
+    double target = 1.0;    // length of the sides to be made: the knob for the count
+    double lowest = 0.6;    // height of the new triangle, at least and ...
+    double highest = 1.26;  // ... at most
+};
+
+class Front {
+  public:
+    Front(MetricMesh& mesh, const FrontOptions& options) : mesh_(mesh), options_(options) {
+        for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
+            const Triangle& T = mesh.triangle(t);
+            for (int slot = 0; slot < 3; ++slot) {
+                if (is_locked(T.n[slot])) edges_.push_back({T.v[next(slot)], T.v[prev(slot)]});
+            }
+        }
+    }
+
+    // Accepts what it can, and finds where points are wanted: how many.
+    template <typename Poll>
+    std::size_t advance(Poll& poll) {
+        wanted_.clear();
+        for (std::size_t i = 0; i < edges_.size(); ++i) {  // grows on the way
+            if (i % 1024 == 0) poll();
+            consider(edges_[i]);
+        }
+        edges_.clear();
+        return wanted_.size();
+    }
+
+    std::vector<double> wanted() const {
+        std::vector<double> out;
+        out.reserve(2 * wanted_.size());
+        for (const Wanted& w : wanted_) out.push_back(w.at.x), out.push_back(w.at.y);
+        return out;
+    }
+    std::size_t wanted_count() const { return wanted_.size(); }
+
+    // Finds the points anew with the metrics at the wanted places.
+    template <typename TensorAt>
+    void refine(TensorAt&& tensor_at) {
+        for (std::size_t i = 0; i < wanted_.size(); ++i) {
+            Wanted& w = wanted_[i];
+            const Tensor m = mesh_.vertices[w.edge.a].metric + mesh_.vertices[w.edge.b].metric;
+            w.at = apex(w.edge, (1.0 / 3) * (m + tensor_at(i)));
+        }
+    }
+
+    // Puts the points into the mesh, each with the metric there; new edges join the front.
+    template <typename TensorAt, typename Poll>
+    Index insert(TensorAt&& tensor_at, Poll& poll) {
+        PointInserter inserter(mesh_, options_.spacing);
+        Index inserted = 0;
+        for (std::size_t i = 0; i < wanted_.size(); ++i) {
+            if (i % 1024 == 0) poll();
+            const Edge e = wanted_[i].edge;
+            Index near = mesh_.topology.find_edge(e.a, e.b, ball_).triangle;
+            if (near == NONE) continue;
+            if (inserter.insert(wanted_[i].at, tensor_at(i), near) !=
+                PointInserter::Outcome::inserted)
+                continue;
+            const Index p = Index(mesh_.vertices.size()) - 1;
+            ++inserted;
+            edges_.push_back(e);
+            edges_.push_back({p, e.b});
+            edges_.push_back({e.a, p});
+        }
+        return inserted;
+    }
+
+  private:
+    struct Edge {
+        Index a, b;
+    };
+    struct Wanted {
+        Edge edge;
+        Point at;
+    };
+
+    void consider(Edge e) {
+        const Place place = mesh_.topology.find_edge(e.a, e.b, ball_);
+        if (place.triangle == NONE) return;
+        Triangle& T = mesh_.topology.triangles[place.triangle];
+        if (!(T.fresh & TO_ADVANCE)) return;
+        const Index c = T.v[place.slot];
+        if (mesh_.length(e.b, c) < options_.accept && mesh_.length(c, e.a) < options_.accept) {
+            T.fresh &= ~TO_ADVANCE;
+            edges_.push_back({c, e.b});
+            edges_.push_back({e.a, c});
+            return;
+        }
+        const Tensor m = mesh_.vertices[e.a].metric + mesh_.vertices[e.b].metric;
+        wanted_.push_back({e, apex(e, 0.5 * m)});
+    }
+
+    // The middle of (a, b) plus the height along the M-orthogonal w of e, for sides of the target
+    // length; |w|_M = sqrt(det M) |e|_M.
+    Point apex(Edge edge, const Tensor& m) const {
+        const Point a = mesh_.at(edge.a), b = mesh_.at(edge.b);
+        const double ex = b.x - a.x, ey = b.y - a.y;
+        const double wx = -(m.b * ex + m.c * ey), wy = m.a * ex + m.b * ey;
+        const double length = mesh_.length(edge.a, edge.b);
+        const double square = options_.target * options_.target - 0.25 * length * length;
+        const double height =
+            std::min(std::max(std::sqrt(std::max(square, 0.0)), options_.lowest), options_.highest);
+        const double share = height / std::sqrt(m.q(wx, wy));
+        return {0.5 * (a.x + b.x) + share * wx, 0.5 * (a.y + b.y) + share * wy};
+    }
+
+    MetricMesh& mesh_;
+    FrontOptions options_;
+    std::vector<Edge> edges_;
+    std::vector<Wanted> wanted_;
+    std::vector<Place> ball_;
+};
+
+}  // namespace adaptmesh

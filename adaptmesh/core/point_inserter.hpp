@@ -1,0 +1,78 @@
+// Putting a point into a metric mesh: find its place, see that it keeps its distance, insert, flip.
+#pragma once
+
+#include <vector>
+
+#include "adaptmesh/core/locate.hpp"
+#include "adaptmesh/core/metric_mesh.hpp"
+#include "adaptmesh/core/swap.hpp"
+
+namespace adaptmesh {
+
+class PointInserter {
+  public:
+    PointInserter(MetricMesh& mesh, double spacing) : mesh_(mesh), spacing_(spacing) {}
+
+    enum class Outcome { inserted, too_near, on_constraint, not_reached };
+
+    // Tries to put a point into the mesh, walking to it from the triangle `near`, which becomes the
+    // one where the walk ended. The new vertex is the last one.
+    Outcome insert(Point at, const Tensor& metric, Index& near) {
+        const Location where = locate(mesh_.topology, [this](Index v) { return mesh_.at(v); }, at, near,
+                                      Walls::locked_edges);
+        near = where.triangle;
+        if (where.where == Where::on_vertex) return Outcome::too_near;
+        if (where.where == Where::outside) return Outcome::not_reached;
+        const Place place = where.place();
+        const bool on_edge = where.where == Where::on_edge;
+        if (on_edge && is_locked(mesh_.triangle(place.triangle).n[place.slot]))
+            return Outcome::on_constraint;
+
+        const Vertex p = Vertex::make(at, metric);
+        if (!keeps_distance(p, place.triangle)) return Outcome::too_near;
+
+        const Index v = mesh_.add_vertex(p);
+        around_.clear();
+        around_.push_back(place.triangle);
+        if (on_edge) {
+            const Index across = triangle_of(mesh_.triangle(place.triangle).n[place.slot]);
+            for (Index t : mesh_.topology.split_edge(place, v)) around_.push_back(t);
+            around_.push_back(across);
+        } else {
+            for (Index t : mesh_.topology.split_triangle(place.triangle, v)) around_.push_back(t);
+        }
+        legalise_around(mesh_, v, around_, DelaunayCriterion{});
+        return Outcome::inserted;
+    }
+
+  private:
+    // Looks at the vertices of the triangles whose circle in the metric of p holds p: those that p
+    // would be joined to. Constraints screen what lies behind them.
+    bool keeps_distance(const Vertex& p, Index home) {
+        auto& triangles = mesh_.topology.triangles;
+        const std::uint32_t stamp = mesh_.topology.new_stamp();
+        cavity_.assign(1, home);
+        triangles[home].stamp = stamp;
+        for (std::size_t i = 0; i < cavity_.size(); ++i) {
+            const Triangle& T = triangles[cavity_[i]];
+            for (int slot = 0; slot < 3; ++slot) {
+                if (MetricMesh::length(p, mesh_.vertices[T.v[slot]]) < spacing_) return false;
+                if (is_locked(T.n[slot])) continue;
+                Triangle& U = triangles[triangle_of(T.n[slot])];
+                if (U.stamp == stamp) continue;
+                U.stamp = stamp;
+                if (MetricMesh::in_circle(p.metric, mesh_.at(U.v[0]), mesh_.at(U.v[1]),
+                                          mesh_.at(U.v[2]), p.at, 0.0))
+                    cavity_.push_back(triangle_of(T.n[slot]));
+            }
+        }
+        return true;
+    }
+
+    MetricMesh& mesh_;
+    double spacing_;
+    std::vector<Index> cavity_;
+    std::vector<Index> around_;
+};
+
+}  // namespace adaptmesh
