@@ -18,7 +18,7 @@ def adapt(
     mesh: Mesh,
     metric: Any,
     *,
-    placement: str = "edges",
+    placement: str = "front",
     max_vertices: int = 5_000_000,
     progress: Progress | None = None,
 ) -> Mesh:

@@ -40,6 +40,20 @@ class EdgePlacement:
 
 @dataclass(frozen=True)
 class FrontPlacement:
+    """How points are put ahead of the front.
+
+    Attributes
+    ----------
+    accept : float
+        A triangle ahead of the front whose other sides are no longer than this is kept as it is.
+    spacing : float
+        A point nearer than this to a vertex is refused, in metric length.
+    target : float
+        Length of the sides to be made: the knob for the number of vertices.
+    trials : int
+        How often the place of a point is found anew with the metric at the place before.
+    """
+
     accept: float = 1.35
     spacing: float = 0.8
     target: float = 1.0
@@ -78,7 +92,7 @@ def generate(
     domain: Domain,
     metric: Any,
     *,
-    placement: str = "edges",
+    placement: str = "front",
     max_vertices: int = 5_000_000,
     progress: Progress | None = None,
 ) -> Mesh:
@@ -90,9 +104,10 @@ def generate(
     metric : number, callable, or control space
         A size h; or a function of an (n, 2) array of points that returns sizes (n,), packed metrics
         (n, 3) = (m11, m12, m22) or tensors (n, 2, 2); or anything made by `metrics`.
-    placement : {"edges"}
-        How points are placed. ``"edges"``: along edges longer than unit, at equal metric shares
-        (Borouchaki and George).
+    placement : {"front", "edges"}
+        How points are placed. ``"front"``: so as to make unit triangles, layer after layer from the
+        constraints inwards, and along edges where that leaves gaps. ``"edges"``: only along edges
+        longer than unit, at equal metric shares (Borouchaki and George).
     max_vertices : int
         The largest mesh allowed. More is refused before anything is built, with the prediction.
     progress : callable, optional
@@ -175,11 +190,13 @@ def place_ahead_of_front(
     expected: int,
     report: Progress,
 ) -> None:
+    """Build unit triangles layer by layer, until the front has met itself everywhere."""
     front = mesher.front(options.accept, options.spacing, options.target)
     while mesher.advance(front):
         for _ in range(options.trials):
             front.refine(field(front.wanted()))
         mesher.insert_ahead(front, field(front.wanted()))
+        _check_size(mesher, max_vertices, expected)
         report("placing points", min(0.7, 0.05 + 0.65 * mesher.vertex_count / max(expected, 1)))
 
 
@@ -202,13 +219,17 @@ def place_along_edges(
         mesher.insert_along_edges(edges, options.long_edge, options.spacing, max_vertices)
         if mesher.vertex_count == before:
             return
-        if mesher.vertex_count >= max_vertices:
-            raise BudgetError(
-                f"the mesh has reached max_vertices = {max_vertices:,} and is not yet fine enough "
-                f"(about {expected:,} vertices were predicted): ask for larger sizes, or allow more"
-            )
+        _check_size(mesher, max_vertices, expected)
         refresh(mesher, field)
         report("placing points", min(0.7, 0.05 + 0.65 * mesher.vertex_count / max(expected, 1)))
+
+
+def _check_size(mesher: _core.Mesher, max_vertices: int, expected: int) -> None:
+    if mesher.vertex_count >= max_vertices:
+        raise BudgetError(
+            f"the mesh has reached max_vertices = {max_vertices:,} and is not yet fine enough "
+            f"(about {expected:,} vertices were predicted): ask for larger sizes, or allow more"
+        )
 
 
 def refresh(mesher: _core.Mesher, field: ControlSpace) -> None:
