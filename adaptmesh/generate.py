@@ -49,7 +49,8 @@ class FrontPlacement:
     spacing : float
         A point nearer than this to a vertex is refused, in metric length.
     target : float
-        Length of the sides to be made: the knob for the number of vertices.
+        Length of the sides to be made; the front corrects it by up to 7 % so that the number of
+        triangles it makes is what their metric area is worth.
     trials : int
         How often the place of a point is found anew with the metric at the place before.
     """

@@ -25,7 +25,7 @@ namespace adaptmesh {
 struct FrontOptions {
     double accept = 1.35;   // a triangle ahead with no longer side is kept as it is
     double spacing = 0.8;   // a point nearer than this to a vertex is refused
-    double target = 1.0;    // length of the sides to be made: the knob for the count
+    double target = 1.0;    // length of the sides to be made, before book-keeping
     double lowest = 0.6;    // height of the new triangle, at least and ...
     double highest = 1.26;  // ... at most
 };
@@ -45,6 +45,7 @@ class Front {
     template <typename Poll>
     std::size_t advance(Poll& poll) {
         wanted_.clear();
+        books_.age();
         for (std::size_t i = 0; i < edges_.size(); ++i) {  // grows on the way
             if (i % 1024 == 0) poll();
             consider(edges_[i]);
@@ -102,6 +103,32 @@ class Front {
         Point at;
     };
 
+    // Triangles accepted of late, and how many unit triangles their metric area is worth. Where the
+    // metric grows finer ahead of the front, sides are on average above the target; where it is
+    // curved, unit sides enclose less than a unit triangle. Both would show in the count.
+    class Books {
+      public:
+        void age() { made_ *= MEMORY, worth_ *= MEMORY; }
+        void enter(double area) { made_ += 1, worth_ += area / (0.25 * std::sqrt(3.0)); }
+        double correction() const {
+            return made_ < FEWEST ? 1 : std::min(std::max(made_ / worth_, 1 / MOST), MOST);
+        }
+
+      private:
+        static constexpr double MEMORY = 0.95;  // share of the account that outlives a layer
+        static constexpr double FEWEST = 20;    // triangles before the account is heeded
+        static constexpr double MOST = 1.07;
+        double made_ = 0, worth_ = 0;
+    };
+
+    double metric_area(const Triangle& T) const {
+        const Vertex &a = mesh_.vertices[T.v[0]], &b = mesh_.vertices[T.v[1]];
+        const Vertex& c = mesh_.vertices[T.v[2]];
+        const double ux = b.at.x - a.at.x, uy = b.at.y - a.at.y;
+        const double vx = c.at.x - a.at.x, vy = c.at.y - a.at.y;
+        return 0.5 * (ux * vy - uy * vx) * (a.sqrt_det + b.sqrt_det + c.sqrt_det) / 3;
+    }
+
     void consider(Edge e) {
         const Place place = mesh_.topology.find_edge(e.a, e.b, ball_);
         if (place.triangle == NONE) return;
@@ -110,6 +137,7 @@ class Front {
         const Index c = T.v[place.slot];
         if (mesh_.length(e.b, c) < options_.accept && mesh_.length(c, e.a) < options_.accept) {
             T.fresh &= ~TO_ADVANCE;
+            books_.enter(metric_area(T));
             edges_.push_back({c, e.b});
             edges_.push_back({e.a, c});
             return;
@@ -125,7 +153,8 @@ class Front {
         const double ex = b.x - a.x, ey = b.y - a.y;
         const double wx = -(m.b * ex + m.c * ey), wy = m.a * ex + m.b * ey;
         const double length = mesh_.length(edge.a, edge.b);
-        const double square = options_.target * options_.target - 0.25 * length * length;
+        const double target = options_.target * books_.correction();
+        const double square = target * target - 0.25 * length * length;
         const double height =
             std::min(std::max(std::sqrt(std::max(square, 0.0)), options_.lowest), options_.highest);
         const double share = height / std::sqrt(m.q(wx, wy));
@@ -134,6 +163,7 @@ class Front {
 
     MetricMesh& mesh_;
     FrontOptions options_;
+    Books books_;
     std::vector<Edge> edges_;
     std::vector<Wanted> wanted_;
     std::vector<Place> ball_;
