@@ -6,7 +6,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 from reference import exact
-from reference.delaunay import rational, border_of, edges_of, incircle, orient2d
+from reference.delaunay import border_of, edges_of, incircle, orient2d, rational
 
 
 def on_segment(p, a, b):
