@@ -64,24 +64,34 @@ nb::tuple triangulate_arrays(const Points& points_in, const IndexPairs& segments
                           to_numpy(std::move(is_boundary), {q}).attr("view")("bool"));
 }
 
-}  // namespace
-
-void bind_triangulate(nb::module_& m) {
-    static nb::object fault = nb::steal(
-        PyErr_NewExceptionWithDoc("adaptmesh._core.Fault",
-                                  "Input that cannot be triangulated; args (kind, i, j, x, y), "
-                                  "see adaptmesh/core/fault.hpp.",
-                                  nullptr, nullptr));
-    m.attr("Fault") = fault;
+// Fault as a Python exception with args (kind, i, j, x, y).
+void bind_fault(nb::module_& m) {
+    // Never released: it must outlive the interpreter's last exception.
+    static PyObject* const type = PyErr_NewExceptionWithDoc(
+        "adaptmesh._core.Fault",
+        "Input that cannot be triangulated; args (kind, i, j, x, y), see adaptmesh/core/fault.hpp.",
+        nullptr, nullptr);
+    m.attr("Fault") = nb::handle(type);
     nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
         try {
             std::rethrow_exception(thrown);
         } catch (const Fault& f) {
             const nb::tuple args = nb::make_tuple(f.kind, f.i, f.j, f.at.x, f.at.y);
-            PyErr_SetObject(fault.ptr(), args.ptr());
+            PyErr_SetObject(type, args.ptr());
         }
     });
-    m.def("delaunay", &delaunay_arrays, nb::arg("points"));
+}
+
+}  // namespace
+
+void bind_triangulate(nb::module_& m) {
+    bind_fault(m);
+    m.def("delaunay", &delaunay_arrays, nb::arg("points"),
+          "(triangles, duplicate_of): the Delaunay triangulation; each point's own number, or that "
+          "of the first point equal to it.");
     m.def("triangulate", &triangulate_arrays, nb::arg("points"), nb::arg("segments"),
-          nb::arg("holes"), nb::arg("seeds"), nb::arg("nesting"));
+          nb::arg("holes"), nb::arg("seeds"), nb::arg("nesting"),
+          "(triangles, labels, sub_edges, sub_edge_segment, sub_edge_is_boundary): the constrained "
+          "Delaunay triangulation of the domain that the segments enclose; label 1 + k for the "
+          "region of seed k, 0 without a seed.");
 }

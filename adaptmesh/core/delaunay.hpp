@@ -29,14 +29,15 @@ inline void check_points(const std::vector<Point>& points) {
     if (points.size() < 3) throw Fault("too_few_points", Index(points.size()));
 }
 
-// The triangle (a, b, c) and its three ghosts. Seen from inside the sphere that the ghost vertex
-// closes this is a tetrahedron:
+// The triangle (a, b, c) and its three ghosts:
 //
-//       \   2   /        ghost k lies across edge k of triangle 0
-//        \     /         and holds the ghost vertex in its slot 0
-//     1   b---a
-//          \ /   .       .
-//           c
+//       \     /
+//        \   /             Ghost i lies across edge i of the triangle and has the ghost vertex in
+//     1    c    0          its slot 0. Two ghosts share the edge from a corner out to infinity.
+//         / \              .
+//        / t \             .
+//   ----a-----b----
+//          2
 inline void first_triangle(Triangulation& mesh, Index a, Index b, Index c) {
     const Index v[3] = {a, b, c};
     const Index t = mesh.add_triangle(a, b, c);
@@ -45,8 +46,8 @@ inline void first_triangle(Triangulation& mesh, Index a, Index b, Index c) {
         ghost[i] = mesh.add_triangle(GHOST, v[prev(i)], v[next(i)]);
         mesh.link(t, i, edge_code(ghost[i], 0));
     }
-    // Ghost i is (GHOST, prev, next): its slot 1 is the edge from v[next(i)] out to infinity,
-    // which it shares with the ghost of the other edge at v[next(i)], prev(i), there slot 2.
+    // Ghost i is (GHOST, v[prev(i)], v[next(i)]). Its edge 1, at v[next(i)], is edge 2 of the ghost
+    // across the other side at that corner, which is side prev(i).
     for (int i = 0; i < 3; ++i) mesh.link(ghost[i], 1, edge_code(ghost[prev(i)], 2));
 }
 

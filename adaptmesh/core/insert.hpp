@@ -32,20 +32,22 @@ bool conflicts(const Triangle& T, const At& at, Point p) {
 template <typename At>
 void legalise(Triangulation& mesh, const At& at, Point p, std::vector<Place>& opposite) {
     while (!opposite.empty()) {
-        const Place edge = opposite.back();
+        Place edge = opposite.back();
         opposite.pop_back();
-        const Index code = mesh.triangles[edge.triangle].n[edge.slot];
-        if (is_locked(code)) continue;
-        const Index u = triangle_of(code);
-        if (!conflicts(mesh.triangles[u], at, p)) continue;
-        mesh.flip(edge);
-        opposite.push_back({u, 2});
-        opposite.push_back({edge.triangle, 0});
+        for (;;) {
+            const Index code = mesh.triangles[edge.triangle].n[edge.slot];
+            if (is_locked(code)) break;
+            const Index u = triangle_of(code);
+            if (!conflicts(mesh.triangles[u], at, p)) break;
+            mesh.flip(edge);
+            opposite.push_back({u, 2});
+            edge.slot = 0;  // go on with t, u waits
+        }
     }
 }
 
-// Puts vertex v at the place that `locate` found for it; never on_vertex. `scratch` is empty
-// before and after. Locked edges stay, split if v is on them.
+// Puts vertex v at the place that `locate` found for it: not on_vertex, and outside only if there
+// are ghosts. Locked edges stay, split if v is on them. `scratch` is empty before and after.
 template <typename At>
 void insert_vertex(Triangulation& mesh, const At& at, Index v, Location where,
                    std::vector<Place>& scratch) {

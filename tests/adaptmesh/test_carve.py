@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
-from constrained_oracle import check_constrained_delaunay, cut_segments, twice_area
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from reference.constrained import check_constrained_delaunay, cut_segments, twice_area
 
 from adaptmesh import _core
 

@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from constrained_oracle import check_constrained_delaunay, cut_segments, twice_area
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from reference.constrained import check_constrained_delaunay, cut_segments, twice_area
 
 from adaptmesh import _core
 

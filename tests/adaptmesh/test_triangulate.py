@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from reference.delaunay import border_of, delaunay_triangles, edges_of, loops_of
 from scipy.spatial import Delaunay
-from triangulation_oracle import border_of, delaunay_triangles, edges_of, loops_of
 
 from adaptmesh import _core
 from adaptmesh.errors import DomainError

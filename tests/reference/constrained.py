@@ -5,7 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from itertools import pairwise
 
-from triangulation_oracle import border_of, edges_of, incircle, orient2d
+from reference import exact
+from reference.delaunay import border_of, edges_of, incircle, orient2d, rational
 
 
 def on_segment(p, a, b):
@@ -32,8 +33,7 @@ def twice_area(points, triangles):
     """Exactly."""
     total = Fraction(0)
     for t in triangles:
-        (ax, ay), (bx, by), (cx, cy) = ([Fraction(float(v)) for v in points[k]] for k in t)
-        total += (ax - cx) * (by - cy) - (ay - cy) * (bx - cx)
+        total += exact.orient2d(*(rational(points[k]) for k in t))
     return total
 
 

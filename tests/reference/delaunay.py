@@ -6,24 +6,21 @@ from collections import Counter
 from fractions import Fraction
 from itertools import combinations
 
-
-def orient2d(a, b, c):
-    """Sign of the area of abc, by rational arithmetic."""
-    (ax, ay), (bx, by), (cx, cy) = ([Fraction(float(v)) for v in p] for p in (a, b, c))
-    det = (ax - cx) * (by - cy) - (ay - cy) * (bx - cx)
-    return (det > 0) - (det < 0)
+from reference import exact
 
 
-def incircle(a, b, c, d):
-    """Sign: positive if d is strictly inside the circle through counter-clockwise abc."""
-    dx, dy = (Fraction(float(v)) for v in d)
-    rows = []
-    for p in (a, b, c):
-        x, y = Fraction(float(p[0])) - dx, Fraction(float(p[1])) - dy
-        rows.append((x, y, x * x + y * y))
-    (ax, ay, aq), (bx, by, bq), (cx, cy, cq) = rows
-    det = aq * (bx * cy - by * cx) + bq * (cx * ay - cy * ax) + cq * (ax * by - ay * bx)
-    return (det > 0) - (det < 0)
+def rational(p):
+    return tuple(Fraction(float(v)) for v in p)
+
+
+def orient2d(*points):
+    """Exact; only the sign counts. Points are pairs of float."""
+    return exact.orient2d(*map(rational, points))
+
+
+def incircle(*points):
+    """Exact; only the sign counts. Points are pairs of float."""
+    return exact.incircle(*map(rational, points))
 
 
 def delaunay_triangles(points):
