@@ -7,14 +7,11 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 from ..errors import FormatError
 from .colours import PAPER
 from .frame import Frame
-
-if TYPE_CHECKING:
-    import pyvista as pv
 
 FORMATS = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
 
@@ -32,11 +29,13 @@ def quiet() -> Iterator[None]:
         vtkObject.SetGlobalWarningDisplay(before)
 
 
-def make_plotter(frame: Frame, off_screen: bool | None) -> pv.Plotter:
+def make_plotter(frame: Frame, off_screen: bool | None) -> Any:
     """An empty plotter that looks at the frame from above, without perspective."""
     import pyvista as pv
 
-    plotter = pv.Plotter(off_screen=off_screen, window_size=list(frame.window), lighting="none")
+    plotter: Any = pv.Plotter(
+        off_screen=off_screen, window_size=list(frame.window), lighting="none"
+    )
     plotter.set_background(PAPER)
     plotter.enable_anti_aliasing("ssaa")
     x, y = frame.centre
@@ -52,7 +51,7 @@ def make_plotter(frame: Frame, off_screen: bool | None) -> pv.Plotter:
     return plotter
 
 
-def write_picture(plotter: pv.Plotter, path: Path) -> None:
+def write_picture(plotter: Any, path: Path) -> None:
     """Draw and write the picture under a temporary name, then rename it."""
     handle, name = tempfile.mkstemp(suffix=path.suffix, prefix=".", dir=path.parent)
     os.close(handle)
