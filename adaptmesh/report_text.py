@@ -136,8 +136,8 @@ def _worst(report: Report) -> Table:
         table.add_row(f"{edge.length:.4g}", between, f"{_at(edge.start)} to {_at(edge.end)}")
     table.add_row("quality", "worst triangles", "")
     for triangle in report.worst_triangles[:SHOWN]:
-        corners = "  ".join(_at(corner) for corner in triangle.corners)
-        table.add_row(f"{triangle.quality:.4g}", str(triangle.triangle), corners)
+        x, y = (sum(c) / 3 for c in zip(*triangle.corners, strict=True))
+        table.add_row(f"{triangle.quality:.4g}", str(triangle.triangle), f"around {_at((x, y))}")
     return table
 
 

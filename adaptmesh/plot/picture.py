@@ -71,7 +71,7 @@ def plot(
         Draw the metric as ellipses of its unit vectors over the mesh, so many at most. Where they
         would be too small to see they are all enlarged, and the legend says by how much.
     path : path, optional
-        Write the picture there (.png, .jpg, .tif, .bmp) and return nothing. It needs no display.
+        Write the picture there (.png, .jpg, .tif) and return nothing. It needs no display.
     bounds : (x0, y0, x1, y1), optional
         Look at this part only.
     title : str, optional

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..errors import FormatError
+from ..io.files import replace_files
 from .colours import PAPER
 from .frame import Frame
 
-FORMATS = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
+FORMATS = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG", ".tif": "TIFF", ".tiff": "TIFF"}
 
 
 @contextmanager
@@ -52,17 +55,16 @@ def make_plotter(frame: Frame, off_screen: bool | None) -> Any:
 
 
 def write_picture(plotter: Any, path: Path) -> None:
-    """Draw and write the picture under a temporary name, then rename it."""
-    handle, name = tempfile.mkstemp(suffix=path.suffix, prefix=".", dir=path.parent)
-    os.close(handle)
+    """Draw the picture and write it, whole or not at all."""
+    from PIL import Image
+
     try:
-        plotter.screenshot(name)
-        Path(name).replace(path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+        pixels = plotter.screenshot(return_img=True)
     finally:
         plotter.close()
+    data = BytesIO()
+    Image.fromarray(np.asarray(pixels)).save(data, FORMATS[path.suffix.lower()])
+    replace_files({path: data.getvalue()})
 
 
 def check_path(path: str | os.PathLike[str]) -> Path:

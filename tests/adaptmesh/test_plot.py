@@ -222,6 +222,13 @@ def test_picture_is_whole_or_absent(can_draw, tmp_path, monkeypatch):
     assert [p.name for p in tmp_path.iterdir()] == ["a.png"]
 
 
+@pytest.mark.parametrize(("suffix", "magic"), [(".jpg", b"\xff\xd8"), (".tif", b"II*")])
+def test_other_formats(can_draw, tmp_path, suffix, magic):
+    path = tmp_path / f"a{suffix}"
+    plot(MESH, path=str(path), window_size=SMALL)
+    assert path.read_bytes().startswith(magic)
+
+
 # --- requests that are refused, before anything is drawn ------------------------------------
 
 
