@@ -79,9 +79,9 @@ class Report:
     unit_fraction, short_fraction, long_fraction : float
         Share of the edges with l in [1/√2, √2], below, and above.
     efficiency_index : float
-        1 - mean (1 - min(l, 1/l))² (Borouchaki, Hecht, Saltel, George, Laug 1997).
+        1 - mean (1 - min(l, 1/l))², after Borouchaki et al. 1997.
     efficiency_index_frey_george : float
-        exp(mean(min(l, 1/l) - 1)) (Frey and George, Mesh Generation).
+        exp(mean(min(l, 1/l) - 1)), after Frey and George; MMG reports it too (Dobrzynski, RT-422).
     length_min, length_mean, length_max : float
     length_quantiles : mapping of float to float
     quality_min, quality_p1, quality_mean : float
@@ -132,6 +132,11 @@ class Report:
 
         return as_text(self)
 
+    def _repr_html_(self) -> str:
+        from .report_text import as_html
+
+        return as_html(self)
+
     def __rich__(self) -> Any:
         from .report_text import as_renderable
 
@@ -157,7 +162,8 @@ def measure(mesh: Mesh, metric: Any) -> Report:
     MetricError
         The metric cannot be used: not finite, not positive definite, wrong shape.
     InvalidMeshError
-        There are no triangles, or they name points that do not exist.
+        There are no triangles, they name points that do not exist or are not finite, or their
+        area is not positive.
 
     Notes
     -----
@@ -178,6 +184,8 @@ def measure(mesh: Mesh, metric: Any) -> Report:
     areas = metric_areas(mesh.points, mesh.triangles, field)
     quality = qualities(lengths[sides], areas)
     complexity = float(areas.sum())
+    if complexity <= 0:
+        raise InvalidMeshError("the triangles are flat or clockwise: see mesh.validate()")
     short, long = lengths < SHORTEST, lengths > LONGEST
     shortfall = 1 - ratio_to_unit(lengths)
     return Report(
@@ -215,13 +223,15 @@ def qualities(lengths: Floats, areas: Floats) -> Floats:
     1 for the unit equilateral triangle. Where the metric jumps it may come out above 1, and is cut.
     """
     squares = (lengths**2).sum(axis=1)
-    return np.minimum(4 * 3**0.5 * areas / squares, 1.0)
+    out: Floats = np.minimum(4 * 3**0.5 * areas / np.where(squares > 0, squares, np.inf), 1.0)
+    return out
 
 
 def ratio_to_unit(lengths: Floats) -> Floats:
     """min(l, 1/l): how near to one each length is, by ratio."""
     with np.errstate(divide="ignore"):
-        return np.minimum(lengths, 1 / lengths)
+        out: Floats = np.minimum(lengths, 1 / lengths)
+    return out
 
 
 def _plain(value: Any) -> Any:
@@ -245,6 +255,10 @@ def check_measurable(mesh: Mesh) -> None:
             f"triangle {bad[0]} has the vertices {t[bad[0]].tolist()}, but the points are numbered "
             f"0 to {n - 1}: see mesh.validate()"
         )
+    bad = np.flatnonzero(~np.isfinite(mesh.points).all(axis=1))
+    if len(bad):
+        x, y = mesh.points[bad[0]]
+        raise InvalidMeshError(f"point {bad[0]} is ({x}, {y}): see mesh.validate()")
 
 
 def _worst_edges(mesh: Mesh, edges: Ints, lengths: Floats) -> tuple[WorstEdge, ...]:
@@ -265,7 +279,8 @@ def _worst_triangles(mesh: Mesh, quality: Floats) -> tuple[WorstTriangle, ...]:
 def _smallest(values: Floats) -> Ints:
     """Numbers of the few smallest values, smallest first, equal ones in their order."""
     few = np.argpartition(values, min(WORST, len(values) - 1))[:WORST]
-    return few[np.lexsort((few, values[few]))]
+    order = np.lexsort((few, values[few]))
+    return np.asarray(few[order])
 
 
 def _places(mesh: Mesh, *vertices: int) -> Any:

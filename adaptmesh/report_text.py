@@ -28,11 +28,19 @@ def as_text(report: Report) -> str:
     return "\n".join(line.rstrip() for line in text.get().rstrip().splitlines())
 
 
+def as_html(report: Report) -> str:
+    """The report for a notebook."""
+    console = Console(file=StringIO(), width=WIDTH, record=True, highlight=False)
+    console.print(as_renderable(report))
+    frame = '<pre style="line-height:1.2;font-family:monospace">{code}</pre>'
+    return console.export_html(inline_styles=True, code_format=frame)
+
+
 def as_renderable(report: Report) -> RenderableType:
     """The report for a rich console."""
     histograms = Table.grid(padding=(0, 6, 0, 0))
     histograms.add_row(_length_histogram(report), _quality_histogram(report))
-    parts = [
+    parts: list[RenderableType] = [
         Text("Unit mesh report", style="bold"),
         Text("─" * 72, style="dim"),
         _key_figures(report),
@@ -58,9 +66,9 @@ def _key_figures(report: Report) -> Table:
             f"triangles = (4/√3) C, complexity C {r.complexity:.6g}",
         ),
         ("count ratio", f"{r.count_ratio:.3f}", "triangles / ideal"),
-        ("unit edges", _percent(r.unit_fraction), f"of {_count(r.n_edges)}, in [1/√2, √2]"),
-        ("", _percent(r.short_fraction), "shorter"),
-        ("", _percent(r.long_fraction), "longer"),
+        ("unit edges", percent(r.unit_fraction), f"of {_count(r.n_edges)}, in [1/√2, √2]"),
+        ("", percent(r.short_fraction), "shorter"),
+        ("", percent(r.long_fraction), "longer"),
         (
             "edge length",
             f"{quantiles[0.5]:.3f}",
@@ -128,8 +136,8 @@ def _worst(report: Report) -> Table:
         table.add_row(f"{edge.length:.4g}", between, f"{_at(edge.start)} to {_at(edge.end)}")
     table.add_row("quality", "worst triangles", "")
     for triangle in report.worst_triangles[:SHOWN]:
-        corners = "  ".join(_at(corner) for corner in triangle.corners)
-        table.add_row(f"{triangle.quality:.4g}", str(triangle.triangle), corners)
+        x, y = (sum(c) / 3 for c in zip(*triangle.corners, strict=True))
+        table.add_row(f"{triangle.quality:.4g}", str(triangle.triangle), f"around {_at((x, y))}")
     return table
 
 
@@ -141,7 +149,7 @@ def _count(number: float) -> str:
     return f"{round(number):,}".replace(",", " ")  # a thin space
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
     """A share in per cent that is 100 or 0 only if it is exactly so."""
     text = f"{100 * share:.2f}"
     if (share < 1 and text == "100.00") or (share > 0 and text == "0.00"):

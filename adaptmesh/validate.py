@@ -206,4 +206,4 @@ def _run(table: Table[S], subject: S, founded: bool) -> list[Check]:
         note = "not checked: rests on one that is broken"
         return [Check(name, None, note=note) for name in table]
     found = {name: look(subject) for name, look in table.items()}
-    return [Check(name, f.count == 0, f.count, f.note, f.offenders) for name, f in found.items()]
+    return [Check(name, f.broken == 0, f.broken, f.note, f.offenders) for name, f in found.items()]

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from .subject import SHOWN, Finding, Floats, Index, Ints, Subject, finding
+from .subject import SHOWN, Bools, Finding, Floats, Index, Ints, Subject, finding
 
 BLOCK = 2_000_000  # pairs examined at a time
 
@@ -59,7 +59,7 @@ def corner_angles(s: Subject) -> Floats:
     return np.concatenate(angles)
 
 
-def overlapping_fans(points: Floats, ends: Index, chosen: Index) -> Ints:
+def overlapping_fans(points: Floats, ends: Index, chosen: Bools) -> Ints:
     """Those of the chosen points around which beginnings and ends of fans do not alternate."""
     at = np.concatenate([ends[:, 0], ends[:, 1]])
     to = np.concatenate([ends[:, 1], ends[:, 0]])
@@ -69,7 +69,8 @@ def overlapping_fans(points: Floats, ends: Index, chosen: Index) -> Ints:
     order = np.lexsort((np.arctan2(d[:, 1], d[:, 0]), at))
     at, begins = at[order], begins[order]
     again = (at[1:] == at[:-1]) & (begins[1:] == begins[:-1])
-    return at[1:][again]
+    out: Ints = at[1:][again]
+    return out
 
 
 def simple_border(s: Subject) -> Finding:
@@ -107,10 +108,10 @@ def crossings(s: Subject, ends: Index) -> Ints:
     return np.empty((0, 2), np.int64)
 
 
-def meet(s: Subject, a: Index, b: Index, c: Index, d: Index) -> Index:
+def meet(s: Subject, a: Index, b: Index, c: Index, d: Index) -> Bools:
     """Whether edges ab and cd have more in common than an end."""
     abc, abd, cda, cdb = s.orient(a, b, c), s.orient(a, b, d), s.orient(c, d, a), s.orient(c, d, b)
-    out = (abc * abd < 0) & (cda * cdb < 0)
+    out: Bools = (abc * abd < 0) & (cda * cdb < 0)
     for side, p, q, r in ((abc, a, b, c), (abd, a, b, d), (cda, c, d, a), (cdb, c, d, b)):
         x, y, z = s.points[p], s.points[q], s.points[r]
         between = ((np.minimum(x, y) <= z) & (z <= np.maximum(x, y))).all(axis=1)

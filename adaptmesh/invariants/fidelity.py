@@ -57,7 +57,7 @@ class DomainSubject(Subject):
         return out
 
     @cached_property
-    def steps(self) -> tuple[Ints, Ints, Ints]:
+    def steps(self) -> tuple[Ints, Ints, Bools]:
         """Steps along segments, in order: the segment, the edge, and whether it is run backwards.
 
         ::

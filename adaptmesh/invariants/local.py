@@ -94,7 +94,7 @@ def points_used(s: Subject) -> Finding:
 
 def constrained_are_edges(s: Subject) -> Finding:
     """Every constrained edge is the side of a triangle, and listed once."""
-    keys = edge_keys(*s.mesh.edges.T, len(s.mesh.points))
+    keys = edge_keys(s.mesh.edges[:, 0], s.mesh.edges[:, 1], len(s.mesh.points))
     order = np.argsort(keys, kind="stable")
     again = np.zeros(len(keys), bool)
     again[order[1:]] = keys[order[1:]] == keys[order[:-1]]
@@ -111,7 +111,7 @@ def constrained_are_edges(s: Subject) -> Finding:
 def border_is_constrained(s: Subject) -> Finding:
     """The sides with a single triangle are constrained edges."""
     border = s.sides.border
-    constrained = np.sort(edge_keys(*s.mesh.edges.T, len(s.mesh.points)))
+    constrained = np.sort(edge_keys(s.mesh.edges[:, 0], s.mesh.edges[:, 1], len(s.mesh.points)))
     keys = s.sides.keys[border]
     place = np.searchsorted(constrained, keys)
     bad = border[np.append(constrained, -1)[place] != keys]

@@ -26,7 +26,7 @@ Index = NDArray[np.integer]
 class Finding(NamedTuple):
     """How many items break an invariant, in words, and the first few of them."""
 
-    count: int
+    broken: int
     note: str = ""
     offenders: tuple[str, ...] = ()
 

@@ -48,7 +48,8 @@ def ramp(colours: Sequence[str], steps: int = 256) -> Bytes:
     anchors = np.array([rgb(colour) for colour in colours], float)
     at = np.linspace(0, len(anchors) - 1, steps)
     channels = [np.interp(at, np.arange(len(anchors)), anchors[:, k]) for k in range(3)]
-    return np.stack(channels, axis=1).round().astype(np.uint8)
+    out: Bytes = np.stack(channels, axis=1).round().astype(np.uint8)
+    return out
 
 
 @dataclass(frozen=True)
@@ -86,9 +87,9 @@ class Scale:
 
     def __call__(self, values: Floats) -> Bytes:
         """The colours of values, (n, 3)."""
-        return self.table[
-            np.minimum(self.share(values) * len(self.table), len(self.table) - 1).astype(int)
-        ]
+        steps = len(self.table)
+        out: Bytes = self.table[np.minimum(self.share(values) * steps, steps - 1).astype(int)]
+        return out
 
 
 def length_scale(cmap: str | None) -> Scale:

@@ -82,7 +82,8 @@ class Frame:
     @cached_property
     def factor(self) -> Floats:
         """Frame units for each unit of x and of y."""
-        return 2 * self.stretch / _stretched(self.bounds)[1].max()
+        out: Floats = 2 * self.stretch / _stretched(self.bounds)[1].max()
+        return out
 
     @cached_property
     def size(self) -> Floats:

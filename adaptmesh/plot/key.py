@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from .colours import FADED, INK, PAPER, Bytes, Scale, rgb
 from .frame import Frame
-
-if TYPE_CHECKING:
-    import pyvista as pv
 
 TEXT = 17  # pixels
 MOST_ENTRIES = 14  # of a legend
@@ -21,7 +18,7 @@ MOST_ENTRIES = 14  # of a legend
 class Pen:
     """Draws text and rectangles at pixels of the window, from its lower left corner."""
 
-    def __init__(self, plotter: pv.Plotter, frame: Frame) -> None:
+    def __init__(self, plotter: Any, frame: Frame) -> None:
         self.plotter = plotter
         self.frame = frame
 
@@ -62,7 +59,9 @@ class Pen:
         b = np.asarray(boxes, float) / np.tile(self.frame.window, 2)
         corners = b[:, [0, 1, 2, 1, 2, 3, 0, 3]].reshape(-1, 2)
         points = np.column_stack([corners, np.zeros(len(corners))])
-        shape = pv.PolyData.from_regular_faces(points, np.arange(len(points)).reshape(-1, 4))
+        number = np.arange(len(points)).reshape(-1, 4)
+        faces = np.column_stack([np.full(len(number), 4), number])
+        shape = pv.PolyData(points, faces=faces.ravel())
         shape.cell_data["colour"] = colours
         shape.set_active_scalars("colour", preference="cell")
         mapper, viewport = vtkPolyDataMapper2D(), vtkCoordinate()

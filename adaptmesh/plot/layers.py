@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +10,6 @@ from numpy.typing import NDArray
 from .colours import ELLIPSE, Bytes, rgb
 from .ellipses import SIDES, Ellipses
 from .frame import Frame
-
-if TYPE_CHECKING:
-    import pyvista as pv
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.integer]
@@ -23,20 +20,16 @@ THICKER = 2.0  # lines are drawn on a finer grid of pixels, see `screen.make_plo
 FAINTEST = 4  # of 255; fainter edges are left out
 
 
-def draw_faces(
-    plotter: pv.Plotter, frame: Frame, points: Floats, triangles: Ints, colours: Bytes
-) -> None:
+def draw_faces(plotter: Any, frame: Frame, points: Floats, triangles: Ints, colours: Bytes) -> None:
     """Fill triangles, each in its colour, or between the colours of their vertices."""
-    import pyvista as pv
-
-    shape = pv.PolyData.from_regular_faces(frame.place(points, FACES), triangles)
+    shape = _polygons(frame.place(points, FACES), triangles)
     data = shape.cell_data if len(colours) == len(triangles) else shape.point_data
     data["colour"] = colours
     plotter.add_mesh(shape, scalars="colour", rgb=True, lighting=False)
 
 
 def draw_edges(
-    plotter: pv.Plotter,
+    plotter: Any,
     frame: Frame,
     points: Floats,
     edges: Ints,
@@ -61,35 +54,40 @@ def draw_edges(
 
 
 def draw_lines(
-    plotter: pv.Plotter, frame: Frame, points: Floats, edges: Ints, colours: Bytes, width: float
+    plotter: Any, frame: Frame, points: Floats, edges: Ints, colours: Bytes, width: float
 ) -> None:
     """Draw constrained edges, thick."""
     _add_lines(plotter, frame.place(points, LINES), edges, colours, width * frame.unit)
 
 
-def draw_ellipses(plotter: pv.Plotter, frame: Frame, ellipses: Ellipses) -> None:
+def draw_ellipses(plotter: Any, frame: Frame, ellipses: Ellipses) -> None:
     """Fill ellipses with a veil and draw their outlines."""
-    import pyvista as pv
-
     outlines = ellipses.outlines
     n = len(outlines)
     corners = frame.place(outlines.reshape(-1, 2), ELLIPSES)
     number = np.arange(n * SIDES).reshape(n, SIDES)
-    veil = pv.PolyData.from_regular_faces(corners, number)
-    plotter.add_mesh(veil, color=ELLIPSE, opacity=0.16, lighting=False)
+    plotter.add_mesh(_polygons(corners, number), color=ELLIPSE, opacity=0.16, lighting=False)
     sides = np.stack([number, np.roll(number, -1, axis=1)], axis=2).reshape(-1, 2)
     colours = np.tile(rgb(ELLIPSE), (len(sides), 1))
     _add_lines(plotter, corners, sides, colours, 1.6 * frame.unit)
 
 
+def _polygons(points: NDArray[np.float32], corners: Ints) -> Any:
+    """Polygons of as many corners each, (k, corners)."""
+    import pyvista as pv
+
+    faces = np.column_stack([np.full(len(corners), corners.shape[1]), corners])
+    return pv.PolyData(points, faces=faces.ravel())
+
+
 def _add_lines(
-    plotter: pv.Plotter, points: NDArray[np.float32], edges: Ints, colours: Bytes, width: float
+    plotter: Any, points: NDArray[np.float32], edges: Ints, colours: Bytes, width: float
 ) -> None:
     import pyvista as pv
 
     if len(edges) == 0:
         return
-    shape = pv.PolyData(points, lines=np.column_stack([np.full(len(edges), 2), edges]))
+    shape = pv.PolyData(points, lines=np.column_stack([np.full(len(edges), 2), edges]).ravel())
     shape.cell_data["colour"] = colours
     width = max(THICKER * width, 1.0)
     plotter.add_mesh(shape, scalars="colour", rgb=True, line_width=width, lighting=False)

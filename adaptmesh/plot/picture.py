@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from metrics import ControlSpace
@@ -70,7 +71,7 @@ def plot(
         Draw the metric as ellipses of its unit vectors over the mesh, so many at most. Where they
         would be too small to see they are all enlarged, and the legend says by how much.
     path : path, optional
-        Write the picture there (.png, .jpg, .tif, .bmp) and return nothing. It needs no display.
+        Write the picture there (.png, .jpg, .tif) and return nothing. It needs no display.
     bounds : (x0, y0, x1, y1), optional
         Look at this part only.
     title : str, optional
@@ -104,9 +105,8 @@ def plot(
     target = None if path is None else check_path(path)
     field = None if metric is None else control_space_on(mesh, metric)
     most = ELLIPSES if ellipses is True else int(ellipses)
-    seen = bounds or bounds_of(mesh.points)
-    view = View(mesh, seen)
-    _check_request(show, field, most, view)
+    seen, view = _checked_view(mesh, bounds, window_size)
+    _check_request(show, field, most)
     paint = _paint(view, show, field, cmap)
     lines, names = paint_names(view)
 
@@ -121,14 +121,13 @@ def plot(
         draw_header(pen, title, _caption(mesh, frame))
         _draw_key(pen, paint, names, chosen)
         if target is None:
-            return plotter
+            shown: pv.Plotter = plotter
+            return shown
         write_picture(plotter, target)
     return None
 
 
-def _check_request(
-    show: str | ArrayLike, field: ControlSpace | None, most: int, view: View
-) -> None:
+def _check_request(show: str | ArrayLike, field: ControlSpace | None, most: int) -> None:
     if isinstance(show, str) and show not in KINDS:
         raise ValueError(f"show={show!r} is none of {', '.join(map(repr, KINDS))}, nor numbers")
     if field is None and isinstance(show, str) and show == "length":
@@ -137,8 +136,22 @@ def _check_request(
         raise ValueError("ellipses of which metric? give it: plot(mesh, metric, ellipses=True)")
     if most < 0:
         raise ValueError(f"ellipses={most}: a number of ellipses is wanted, not less than 0")
+
+
+def _checked_view(
+    mesh: Mesh, bounds: Bounds | None, window_size: tuple[int, int] | None
+) -> tuple[Bounds, View]:
+    """What is looked at: the box, and the part of the mesh in it."""
+    if window_size is not None and not (window_size[0] >= 200 and window_size[1] >= 150):
+        raise ValueError(f"window_size={window_size}: at least (200, 150) pixels are wanted")
+    if bounds is None:
+        bounds = bounds_of(mesh.points[mesh.triangles].reshape(-1, 2))
+    elif not (bounds[0] < bounds[2] and bounds[1] < bounds[3] and np.isfinite(bounds).all()):
+        raise ValueError(f"bounds={bounds}: (x0, y0, x1, y1) with x0 < x1 and y0 < y1 are wanted")
+    view = View(mesh, bounds)
     if len(view.numbers) == 0:
-        raise ValueError("no triangle is in sight: check bounds=(x0, y0, x1, y1)")
+        raise ValueError(f"bounds={bounds}: no triangle is in sight")
+    return bounds, view
 
 
 def _paint(
@@ -156,7 +169,7 @@ def _paint(
 
 
 def _draw_mesh(
-    plotter: pv.Plotter, frame: Frame, view: View, paint: Paint, lines: Bytes, edges: bool
+    plotter: Any, frame: Frame, view: View, paint: Paint, lines: Bytes, edges: bool
 ) -> None:
     points = view.mesh.points
     layers.draw_faces(plotter, frame, points, view.triangles, paint.faces)
@@ -168,7 +181,7 @@ def _draw_mesh(
 
 
 def _draw_ellipses(
-    plotter: pv.Plotter, frame: Frame, view: View, field: ControlSpace | None, most: int
+    plotter: Any, frame: Frame, view: View, field: ControlSpace | None, most: int
 ) -> Ellipses | None:
     if field is None or most == 0:
         return None

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
+
+import numpy as np
 
 from ..errors import FormatError
+from ..io.files import replace_files
 from .colours import PAPER
 from .frame import Frame
 
-if TYPE_CHECKING:
-    import pyvista as pv
-
-FORMATS = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
+FORMATS = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG", ".tif": "TIFF", ".tiff": "TIFF"}
 
 
 @contextmanager
@@ -32,11 +32,13 @@ def quiet() -> Iterator[None]:
         vtkObject.SetGlobalWarningDisplay(before)
 
 
-def make_plotter(frame: Frame, off_screen: bool | None) -> pv.Plotter:
+def make_plotter(frame: Frame, off_screen: bool | None) -> Any:
     """An empty plotter that looks at the frame from above, without perspective."""
     import pyvista as pv
 
-    plotter = pv.Plotter(off_screen=off_screen, window_size=list(frame.window), lighting="none")
+    plotter: Any = pv.Plotter(
+        off_screen=off_screen, window_size=list(frame.window), lighting="none"
+    )
     plotter.set_background(PAPER)
     plotter.enable_anti_aliasing("ssaa")
     x, y = frame.centre
@@ -52,18 +54,17 @@ def make_plotter(frame: Frame, off_screen: bool | None) -> pv.Plotter:
     return plotter
 
 
-def write_picture(plotter: pv.Plotter, path: Path) -> None:
-    """Draw and write the picture under a temporary name, then rename it."""
-    handle, name = tempfile.mkstemp(suffix=path.suffix, prefix=".", dir=path.parent)
-    os.close(handle)
+def write_picture(plotter: Any, path: Path) -> None:
+    """Draw the picture and write it, whole or not at all."""
+    from PIL import Image
+
     try:
-        plotter.screenshot(name)
-        Path(name).replace(path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+        pixels = plotter.screenshot(return_img=True)
     finally:
         plotter.close()
+    data = BytesIO()
+    Image.fromarray(np.asarray(pixels)).save(data, FORMATS[path.suffix.lower()])
+    replace_files({path: data.getvalue()})
 
 
 def check_path(path: str | os.PathLike[str]) -> Path:
