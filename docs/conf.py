@@ -13,12 +13,14 @@ version = release = adaptmesh.__version__
 
 extensions = [
     "myst_parser",
+    "numpydoc",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.mathjax",
-    "sphinx.ext.napoleon",
 ]
 exclude_patterns = ["_build", "generated/cli.md"]
+
+templates_path = ["_templates"]
 
 html_theme = "furo"
 html_title = f"adaptmesh {release}"
@@ -30,14 +32,10 @@ myst_heading_anchors = 3
 
 # Docstrings are numpydoc; a name in single backquotes is a link where it can be one.
 default_role = "py:obj"
-napoleon_google_docstring = False
-napoleon_use_ivar = True
-napoleon_use_rtype = False
+numpydoc_show_class_members = False  # autosummary lists them
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 autosummary_generate = True
-autosummary_ignore_module_all = False
-autosummary_imported_members = True
 
 
 def write_command_reference() -> None:

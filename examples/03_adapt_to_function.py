@@ -111,9 +111,9 @@ assert l2_error(mesh) < l2_error(uniform) / 10
 am.plot(mesh, path=out / "03_adapt_to_function.png", title="Adapted to two fronts")
 am.plot(
     mesh,
-    show=u(mesh.points),
-    cmap="coolwarm",
-    bounds=(0.35, 0.35, 0.65, 0.65),
+    field,
+    ellipses=60,
+    bounds=(0.4, 0.4, 0.6, 0.6),
     path=out / "03_adapt_to_function_detail.png",
-    title="Where the fronts cross",
+    title="Where they cross, and what was asked for",
 )

@@ -60,7 +60,7 @@ class Smoother {
         for (int round = 0; round < 2; ++round, step *= 0.5) {
             const Vertex here = mesh_.vertices[v];
             for (int k = 0; k < 6; ++k) {
-                const double angle = (k + 0.5 * round) * (M_PI / 3);
+                const double angle = (k + 0.5 * round) * SIXTH_OF_TURN;
                 const Point d = unit_ball_point(here.metric, std::cos(angle), std::sin(angle));
                 if (try_move(v, {here.at.x + step * d.x, here.at.y + step * d.y}, cost)) {
                     cost = cost_at(mesh_.vertices[v]);
@@ -73,6 +73,7 @@ class Smoother {
     }
 
   private:
+    static constexpr double SIXTH_OF_TURN = 1.0471975511965977;  // pi / 3; M_PI is not standard
     static constexpr double SHORTEST_STEP = 1e-3;  // not worth it, in metric units
     static constexpr double LONGEST_STEP = 0.5;
     static constexpr double WORTHWHILE = 0.9999;   // the cost must fall at least to this share

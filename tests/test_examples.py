@@ -1,0 +1,68 @@
+"""Each example runs alone, and so does the code on the page that newcomers read first."""
+
+import os
+import re
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+EXAMPLES = sorted((ROOT / "examples").glob("[0-9]*.py"))
+PAGE = ROOT / "docs" / "start.md"
+
+# Replaces the pictures where none can be drawn, as on a server without any OpenGL.
+NO_PICTURES = "import adaptmesh; adaptmesh.plot = lambda *args, **keywords: None\n"
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_example_runs_and_asserts(example, tmp_path):
+    code = example.read_text(encoding="utf-8")
+    assert re.search(r"^assert ", code, re.MULTILINE), "an example asserts a number"
+    run = run_python(code if can_draw() else NO_PICTURES + code, tmp_path, "pictures")
+    assert run.returncode == 0, run.stderr
+    assert "Unit mesh report" in run.stdout
+    if can_draw():
+        pictures = {path.stem for path in (tmp_path / "pictures").glob("*.png")}
+        assert example.stem in pictures
+
+
+def test_code_of_getting_started_runs_and_prints_what_the_page_says(tmp_path):
+    text = PAGE.read_text("utf-8")
+    code, messages = blocks(text, "python"), blocks(text, "text")
+    assert len(code) > 5
+    assert len(messages) == 2
+    run = run_python(("" if can_draw() else NO_PICTURES) + "\n".join(code), tmp_path)
+    assert run.returncode == 0, run.stderr
+    for message in messages:
+        assert message in run.stdout
+
+
+def blocks(page, language):
+    """The code blocks of a page that are marked as of a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+
+
+@cache
+def can_draw():
+    """Whether a picture can be drawn here; in another process, as VTK may end it."""
+    code = (
+        "import pyvista as pv; p = pv.Plotter(off_screen=True); p.add_mesh(pv.Sphere()); p.show()"
+    )
+    return run_python(code, ROOT).returncode == 0
+
+
+def run_python(code, folder, *arguments):
+    """Run code as a script in a folder, with the packages that the tests themselves see."""
+    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path), PYTHONUTF8="1")
+    return subprocess.run(
+        [sys.executable, "-c", code, *arguments],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        timeout=300,
+    )
