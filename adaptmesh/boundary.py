@@ -17,6 +17,11 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 
+# The metric is looked at this closely along segments, in metric length: a layer that meets the
+# boundary between two looks would be missed there for good.
+LONGEST_CHORD = 0.125
+
+
 @dataclass(frozen=True)
 class Outline:
     """The points and pieces of all segments: what the triangulation starts from.
@@ -59,7 +64,7 @@ def cut_segments(domain: Domain, field: ControlSpace, most_points: int) -> Outli
     ends = _canonical(domain)
     starts, stops = ends[:, 0], ends[:, 1]
     sampler = _core.edge_sampler(
-        domain.points[starts], tensors[starts], domain.points[stops], tensors[stops]
+        domain.points[starts], tensors[starts], domain.points[stops], tensors[stops], LONGEST_CHORD
     )
     lengths = measure_edges(sampler, field)
     parts = np.maximum(1, np.floor(lengths + 0.5))

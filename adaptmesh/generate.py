@@ -10,6 +10,7 @@ import numpy as np
 
 import metrics
 from metrics import ControlSpace
+from numpy.typing import NDArray
 
 from . import _core
 from .boundary import Outline, cut_segments, measure_edges
@@ -17,7 +18,11 @@ from .domain import Domain
 from .errors import BudgetError, DomainError
 from .mesh import Mesh
 
+Floats = NDArray[np.float64]
 Progress = Callable[[str, float], None]
+
+# A sample with this many times the density sqrt(det M) of all corners of its triangle was missed.
+FAR_FINER = 2.0
 
 PLACEMENTS = ("front", "edges")
 
@@ -134,7 +139,8 @@ def generate(
     field = metrics.as_control_space(metric)
 
     report("predicting the size", 0.0)
-    expected = _check_budget(domain, field, max_vertices)
+    samples = Samples(field)
+    expected = _check_budget(domain, samples, max_vertices)
     report("cutting the boundary", 0.02)
     outline = cut_segments(domain, field, max_vertices)
     mesher = triangulate_outline(domain, outline)
@@ -142,6 +148,8 @@ def generate(
     if placement == "front":
         place_ahead_of_front(mesher, field, FrontPlacement(), max_vertices, expected, report)
     place_along_edges(mesher, field, EdgePlacement(), max_vertices, expected, report)
+    if insert_what_was_missed(mesher, samples):
+        place_along_edges(mesher, field, EdgePlacement(), max_vertices, expected, report)
     optimise(mesher, field, Optimisation(), report)
     report("done", 1.0)
     return finished_mesh(domain, outline, mesher)
@@ -231,6 +239,34 @@ def _check_size(mesher: _core.Mesher, max_vertices: int, expected: int) -> None:
             f"the mesh has reached max_vertices = {max_vertices:,} and is not yet fine enough "
             f"(about {expected:,} vertices were predicted): ask for larger sizes, or allow more"
         )
+
+
+class Samples(ControlSpace):
+    """A control space that remembers where it was asked, and what it answered."""
+
+    def __init__(self, field: ControlSpace) -> None:
+        self._field = field
+        self._points: list[Floats] = []
+        self._tensors: list[Floats] = []
+
+    def values(self, points: Floats) -> Floats:
+        tensors = self._field(points)
+        self._points.append(points)
+        self._tensors.append(tensors)
+        return tensors
+
+    def taken(self) -> tuple[Floats, Floats]:
+        """All points asked for, (n, 2), and the tensors there, (n, 3)."""
+        return np.concatenate(self._points), np.concatenate(self._tensors)
+
+
+def insert_what_was_missed(mesher: _core.Mesher, samples: Samples) -> int:
+    """Put points where the prediction saw the metric far finer than the mesh knows it.
+
+    A layer thinner than an edge can pass between all the places where edges were measured; the
+    quadrature of the complexity has looked elsewhere, and closely where the metric is large.
+    """
+    return mesher.insert_where_finer(*samples.taken(), FAR_FINER, EdgePlacement().spacing)
 
 
 def refresh(mesher: _core.Mesher, field: ControlSpace) -> None:

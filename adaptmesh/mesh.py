@@ -100,7 +100,8 @@ class Mesh:
 
     def edges_named(self, name: str) -> Ints:
         """The constrained edges that bear a name, (j, 2)."""
-        return self.edges[self.edge_tags == _look_up(self.names, name, "edge")]
+        out: Ints = self.edges[self.edge_tags == _look_up(self.names, name, "edge")]
+        return out
 
     def triangles_in(self, region: str) -> Ints:
         """Numbers of the triangles of a named region, (j,)."""

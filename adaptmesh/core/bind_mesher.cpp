@@ -48,12 +48,12 @@ nb::object wanted(const EdgeSampler& sampler) {
 
 // Straight lines between two points each, to be cut into unit pieces.
 EdgeSampler sampler_of(const Points& starts, const Tensors& start_tensors, const Points& ends,
-                       const Tensors& end_tensors) {
+                       const Tensors& end_tensors, double longest_chord) {
     const std::size_t n = starts.shape(0);
     expect_rows(start_tensors.shape(0), n, "start tensors");
     expect_rows(ends.shape(0), n, "ends");
     expect_rows(end_tensors.shape(0), n, "end tensors");
-    EdgeSampler sampler;
+    EdgeSampler sampler(longest_chord, 0.0);
     for (std::size_t i = 0; i < n; ++i) {
         sampler.add({starts(i, 0), starts(i, 1)}, tensor_in(start_tensors, i),
                     {ends(i, 0), ends(i, 1)}, tensor_in(end_tensors, i));
@@ -124,6 +124,15 @@ class Mesher {
                              Index most_vertices) {
         nb::gil_scoped_release release;
         return adaptmesh::insert_along_edges(mesh_, edges, {long_edge, spacing}, most_vertices, poll_);
+    }
+
+    Index insert_where_finer(const Points& points, const Tensors& tensors, double ratio,
+                             double spacing) {
+        expect_rows(tensors.shape(0), points.shape(0), "tensors");
+        const std::vector<Point> at = points_in(points);
+        nb::gil_scoped_release release;
+        return adaptmesh::insert_where_finer(
+            mesh_, at, [&](std::size_t i) { return tensor_in(tensors, i); }, ratio, spacing, poll_);
     }
 
     Index swap() {
@@ -240,7 +249,7 @@ void bind_mesher(nb::module_& m) {
         .def("cut", &cut_into, nb::arg("parts"),
              "Points that cut edge i into parts[i] equal metric shares, and the edge of each.");
     m.def("edge_sampler", &sampler_of, nb::arg("starts"), nb::arg("start_tensors"), nb::arg("ends"),
-          nb::arg("end_tensors"));
+          nb::arg("end_tensors"), nb::arg("longest_chord"));
 
     nb::class_<EdgesToMeasure>(m, "EdgesToMeasure").def_ro("sampler", &EdgesToMeasure::sampler);
 
@@ -263,6 +272,8 @@ void bind_mesher(nb::module_& m) {
         .def("fresh_edges", &Mesher::fresh_edges, nb::arg("uncut_below"))
         .def("insert_along_edges", &Mesher::insert_along_edges, nb::arg("edges"),
              nb::arg("long_edge"), nb::arg("spacing"), nb::arg("most_vertices"))
+        .def("insert_where_finer", &Mesher::insert_where_finer, nb::arg("points"),
+             nb::arg("tensors"), nb::arg("ratio"), nb::arg("spacing"))
         .def("front", &Mesher::front, nb::arg("accept"), nb::arg("spacing"), nb::arg("target"),
              nb::keep_alive<0, 1>())
         .def("advance", &Mesher::advance, nb::arg("front"))

@@ -32,16 +32,16 @@ struct FieldPoint {
 class EdgeSampler {
   public:
     // A chord is trusted when its own length and that of its halves agree to this share (the
-    // halves are then right to about a tenth of it), ...
+    // halves are then right to about a tenth of it), if ...
     static constexpr double AGREEMENT = 0.05;
-    // ... and it is no longer than this: finer detail would pass unseen between its samples.
-    static constexpr double LONGEST_CHORD = 4.0;
     // Shorter ones are trusted as they are: they cannot change the count of points.
     static constexpr double SHORTEST_CHORD = 0.05;
     static constexpr int DEEPEST = 40;
 
+    // ... and it is no longer than `longest_chord`: finer detail can pass unseen between samples.
     // Edges shorter than `uncut_below` will not be cut: only their lengths are kept.
-    explicit EdgeSampler(double uncut_below = 0) : uncut_below_(uncut_below) {}
+    EdgeSampler(double longest_chord, double uncut_below)
+        : longest_chord_(longest_chord), uncut_below_(uncut_below) {}
 
     void add(Point a, const Tensor& metric_a, Point b, const Tensor& metric_b) {
         const Index edge = Index(edges_.size());
@@ -76,7 +76,7 @@ class EdgeSampler {
             const Chord right{c.edge, c.depth + 1, t, c.t1, middle, c.m1};
             const double whole = length(c), halves = length(left) + length(right);
             const bool agree = std::abs(whole - halves) <= AGREEMENT * halves;
-            if ((agree && halves <= LONGEST_CHORD) || halves <= SHORTEST_CHORD ||
+            if ((agree && halves <= longest_chord_) || halves <= SHORTEST_CHORD ||
                 c.depth >= DEEPEST) {
                 lengths_[c.edge] += halves;
                 if (c.depth == 0 && halves < uncut_below_) continue;
@@ -162,6 +162,7 @@ class EdgeSampler {
         return {point(p.edge, p.t0 + s * (p.t1 - p.t0)), metrics::log_mean(p.m0, p.m1, s), p.edge};
     }
 
+    double longest_chord_;
     double uncut_below_;
     std::vector<Edge> edges_;
     std::vector<Chord> chords_;  // asked about

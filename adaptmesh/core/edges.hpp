@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adaptmesh/core/edge_sampler.hpp"
+#include "adaptmesh/core/hilbert.hpp"
 #include "adaptmesh/core/metric_mesh.hpp"
 #include "adaptmesh/core/point_inserter.hpp"
 
@@ -21,6 +22,9 @@ struct EdgePlacement {
 
 // Closed-form lengths that are right to this share are left as they are.
 constexpr double WORTH_CORRECTING = 0.01;
+
+// Of interior edges: there are many, crossing each other, and new ones in each sweep.
+constexpr double LONGEST_CHORD = 4.0;
 
 // Edges handed out for measuring.
 struct EdgesToMeasure {
@@ -41,7 +45,7 @@ struct EdgesToMeasure {
 // The interior edges that appeared since the last call; those shorter than `uncut_below` will only
 // be measured.
 inline EdgesToMeasure take_fresh_edges(MetricMesh& mesh, double uncut_below) {
-    EdgesToMeasure out{EdgeSampler(uncut_below), {}, {}, {}};
+    EdgesToMeasure out{EdgeSampler(LONGEST_CHORD, uncut_below), {}, {}, {}};
     auto& triangles = mesh.topology.triangles;
     for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
         if (!(triangles[t].fresh & TO_MEASURE) || mesh.topology.is_dead(t)) continue;
@@ -63,6 +67,25 @@ inline void correct_lengths(MetricMesh& mesh, const EdgesToMeasure& edges) {
         const double ratio = edges.sampler.lengths()[i] / closed;
         if (std::abs(ratio - 1) > WORTH_CORRECTING) mesh.corrections.set(edges.a[i], edges.b[i], ratio);
     }
+}
+
+// Puts points into the mesh where their metric is far finer than the triangle they lie in knows:
+// features that no edge has met. Returns how many it took.
+template <typename TensorAt, typename Poll>
+Index insert_where_finer(MetricMesh& mesh, const std::vector<Point>& points, TensorAt&& tensor_at,
+                         double ratio, double spacing, Poll& poll) {
+    PointInserter inserter(mesh, spacing);
+    Index inserted = 0, tried = 0, near = 0;
+    for (Index i : hilbert_order(points)) {
+        if (++tried % 1024 == 0) poll();
+        const Vertex p = Vertex::make(points[i], tensor_at(i));
+        near = locate(mesh.topology, [&](Index v) { return mesh.at(v); }, p.at, near).triangle;
+        double known = 0;
+        for (Index v : mesh.triangle(near).v) known = std::max(known, mesh.vertices[v].sqrt_det);
+        if (p.sqrt_det < ratio * known) continue;
+        inserted += inserter.insert(p.at, p.metric, near) == PointInserter::Outcome::inserted;
+    }
+    return inserted;
 }
 
 // Puts the field points of the measured edges into the mesh, up to `most_vertices` in all; returns

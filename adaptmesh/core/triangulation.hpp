@@ -293,10 +293,16 @@ class Triangulation {
     }
 
     // The edge from a to b as an edge of the triangle on its left; triangle NONE if there is none.
+    // Asked from both ends, as where parts of the triangulation touch in a vertex, its ball is but
+    // one of them.
     Place find_edge(Index a, Index b, std::vector<Place>& scratch) const {
         ball(a, scratch);
         for (Place p : scratch) {
             if (triangles[p.triangle].v[next(p.slot)] == b) return {p.triangle, prev(p.slot)};
+        }
+        ball(b, scratch);
+        for (Place p : scratch) {
+            if (triangles[p.triangle].v[prev(p.slot)] == a) return {p.triangle, next(p.slot)};
         }
         return {NONE, 0};
     }
