@@ -8,6 +8,7 @@ Ints = NDArray[np.int32]
 Bools = NDArray[np.bool_]
 
 FIXED: int
+MAX_VERTICES: int
 
 class Fault(Exception):  # noqa: N818
     """What is wrong with points and segments: (kind, i, j, x, y)."""
@@ -32,7 +33,7 @@ class EdgeSampler:
     def wanted(self) -> Floats: ...
     def feed(self, tensors: Floats) -> None: ...
     def lengths(self) -> Floats: ...
-    def cut(self, parts: Ints) -> tuple[Floats, Ints]: ...
+    def cut(self) -> tuple[Floats, Ints, Ints]: ...
 
 class EdgesToMeasure:
     @property

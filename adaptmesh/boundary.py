@@ -56,9 +56,10 @@ def measure_edges(sampler: _core.EdgeSampler, field: ControlSpace) -> Floats:
 def cut_segments(domain: Domain, field: ControlSpace, most_points: int) -> Outline:
     """Cut every segment of the domain into pieces of (nearly) unit metric length.
 
-    A segment of length L becomes max(1, floor(L + 1/2)) pieces of equal length. Each segment is
-    cut once, from its lower point to its upper, so that both its sides and all meshes of the
-    domain with this metric agree on it.
+    A segment, or a part of one between points that lie on it, of length L becomes the n equal
+    pieces for which sqrt((n - 1) n) < L <= sqrt(n (n + 1)): as near to unit as they can be. Each is
+    cut once, from its lower point to its upper, so that both its sides and all meshes of the domain
+    with this metric agree on it.
     """
     tensors = field(domain.points)
     ends = _canonical(domain)
@@ -66,23 +67,21 @@ def cut_segments(domain: Domain, field: ControlSpace, most_points: int) -> Outli
     sampler = _core.edge_sampler(
         domain.points[starts], tensors[starts], domain.points[stops], tensors[stops], LONGEST_CHORD
     )
-    lengths = measure_edges(sampler, field)
-    parts = np.maximum(1, np.floor(lengths + 0.5))
-    if len(domain.points) + parts.sum() - len(parts) > most_points:
+    total = measure_edges(sampler, field).sum()
+    if len(domain.points) + total > most_points:
         raise BudgetError(
-            f"the boundary alone would have {parts.sum():.3g} vertices, but max_vertices is "
+            f"the boundary alone would have about {total:.3g} vertices, but max_vertices is "
             f"{most_points:,}: ask for larger sizes, or allow more"
         )
-    parts = parts.astype(np.int32)
-    cuts, segment = sampler.cut(parts)
-    return _join(domain, tensors, ends, parts, cuts, segment, field(cuts))
+    cuts, piece, parts = sampler.cut()
+    return _join(domain, tensors, ends, parts, cuts, piece, field(cuts))
 
 
 def _canonical(domain: Domain) -> Ints:
-    """The segments, each from its lower left to its upper right end."""
-    p, q = domain.points[domain.segments[:, 0]], domain.points[domain.segments[:, 1]]
+    """The pieces of the domain, each from its lower left to its upper right end."""
+    p, q = domain.points[domain.pieces[:, 0]], domain.points[domain.pieces[:, 1]]
     turned = (p[:, 0] > q[:, 0]) | ((p[:, 0] == q[:, 0]) & (p[:, 1] > q[:, 1]))
-    out: Ints = np.where(turned[:, None], domain.segments[:, ::-1], domain.segments)
+    out: Ints = np.where(turned[:, None], domain.pieces[:, ::-1], domain.pieces)
     return out
 
 
@@ -92,12 +91,12 @@ def _join(
     ends: Ints,
     parts: Ints,
     cuts: Floats,
-    segment: Ints,
+    piece: Ints,
     cut_tensors: Floats,
 ) -> Outline:
-    """Number the cuts after the points of the domain, and chain them along their segments."""
+    """Number the cuts after the points of the domain, and chain them along their pieces."""
     n, k = len(domain.points), len(ends)
-    # The chain of a segment: its start, its cuts, its end; all chains one behind the other.
+    # The chain of a piece: its start, its cuts, its end; all chains one behind the other.
     chain_start = np.concatenate([[0], np.cumsum(parts + 1)])
     chains = np.empty(chain_start[-1], np.int32)
     chains[chain_start[:-1]] = ends[:, 0]
@@ -111,7 +110,7 @@ def _join(
     return Outline(
         points=np.concatenate([domain.points, cuts]),
         tensors=np.concatenate([tensors, cut_tensors]),
-        held_by=np.concatenate([np.full(n, _core.FIXED, np.int32), segment]),
+        held_by=np.concatenate([np.full(n, _core.FIXED, np.int32), domain.piece_segments[piece]]),
         pieces=np.stack([chains[:-1], chains[1:]], axis=1)[inside],
-        segment=owner[:-1][inside],
+        segment=domain.piece_segments[owner[:-1][inside]],
     )

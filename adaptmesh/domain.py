@@ -70,12 +70,15 @@ class Domain:
         self.region_names, self.seeds, self.seed_regions = _checked_regions(regions or {})
         self.names, self.segment_tags = _checked_names(names or {}, len(self.segments))
 
-        triangles, labels, boundary_segments = self._triangulate()
+        triangles, labels, pieces, segment, is_boundary = self._triangulate()
         #: Constrained Delaunay triangles of the points alone, (m, 3), and their regions, (m,).
         self.triangles: Ints = _read_only(triangles)
         self.triangle_regions: Ints = _read_only(self.region_of_label(labels))
-        #: The segments that have the outside on one side, (b,).
-        self.boundary: Ints = _read_only(boundary_segments)
+        #: The segments, divided where points lie on them, (p, 2); the segment each is a piece of,
+        #: (p,); and whether it has the outside on one side, (p,).
+        self.pieces: Ints = _read_only(pieces)
+        self.piece_segments: Ints = _read_only(segment)
+        self.piece_is_boundary: NDArray[np.bool_] = _read_only(is_boundary)
 
     @classmethod
     def polygon(
@@ -141,14 +144,13 @@ class Domain:
         out: Ints = np.concatenate([[0], self.seed_regions]).astype(np.int32)[labels]
         return out
 
-    def _triangulate(self) -> tuple[Ints, Ints, Ints]:
+    def _triangulate(self) -> tuple[Ints, Ints, Ints, Ints, NDArray[np.bool_]]:
         try:
-            triangles, labels, _, segment, is_boundary = _core.triangulate(
+            return _core.triangulate(
                 self.points, self.segments, self.holes, self.seeds, self.nesting
             )
         except _core.Fault as fault:
             raise DomainError(self._explain(*fault.args)) from None
-        return triangles, labels, np.unique(segment[is_boundary])
 
     def _explain(self, kind: str, i: int, j: int, x: float, y: float) -> str:
         """What is wrong, where, and what to do, from a fault that the core found."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -39,7 +40,7 @@ class EdgePlacement:
         A field point nearer than this to a vertex is refused, in metric length.
     """
 
-    long_edge: float = 1.5
+    long_edge: float = 1.45
     spacing: float = 0.75
 
 
@@ -140,16 +141,18 @@ def generate(
 
     report("predicting the size", 0.0)
     samples = Samples(field)
-    expected = _check_budget(domain, samples, max_vertices)
+    budget = Budget(max_vertices, predict(domain, samples))
+    budget.check_prediction()
     report("cutting the boundary", 0.02)
-    outline = cut_segments(domain, field, max_vertices)
+    outline = cut_segments(domain, field, budget.max_vertices)
     mesher = triangulate_outline(domain, outline)
+    mesher.swap()
     report("placing points", 0.05)
     if placement == "front":
-        place_ahead_of_front(mesher, field, FrontPlacement(), max_vertices, expected, report)
-    place_along_edges(mesher, field, EdgePlacement(), max_vertices, expected, report)
+        place_ahead_of_front(mesher, field, FrontPlacement(), budget, report)
+    place_along_edges(mesher, field, EdgePlacement(), budget, report)
     if insert_what_was_missed(mesher, samples):
-        place_along_edges(mesher, field, EdgePlacement(), max_vertices, expected, report)
+        place_along_edges(mesher, field, EdgePlacement(), budget, report)
     optimise(mesher, field, Optimisation(), report)
     report("done", 1.0)
     return finished_mesh(domain, outline, mesher)
@@ -164,39 +167,75 @@ def predict(domain: Domain, metric: Any) -> int:
     """
     field = metrics.as_control_space(metric)
     complexity = metrics.complexity(domain.points, domain.triangles, field).value
-    boundary = metrics.edge_lengths(domain.points, domain.segments[domain.boundary], field).sum()
+    boundary = metrics.edge_lengths(
+        domain.points, domain.pieces[domain.piece_is_boundary], field
+    ).sum()
     return max(len(domain.points), int(2 / np.sqrt(3) * complexity + boundary / 2) + 1)
 
 
-def _check_budget(domain: Domain, field: ControlSpace, max_vertices: int) -> int:
-    expected = predict(domain, field)
-    if expected > max_vertices:
-        raise BudgetError(
-            f"the mesh would have about {expected:.3g} vertices, but max_vertices is "
-            f"{max_vertices:,}: ask for larger sizes, or allow more"
-        )
-    return expected
+@dataclass(frozen=True)
+class Budget:
+    """How many vertices a mesh may have, and is expected to have."""
+
+    max_vertices: int
+    expected: int
+
+    def __post_init__(self) -> None:
+        try:
+            most = operator.index(self.max_vertices)
+        except TypeError:
+            raise TypeError(f"max_vertices must be an integer, not {self.max_vertices!r}") from None
+        if most < 3:
+            raise ValueError(f"max_vertices={most}: the smallest mesh has 3 vertices")
+        object.__setattr__(self, "max_vertices", min(most, _core.MAX_VERTICES))
+
+    def check_prediction(self) -> None:
+        """Refuse what is expected to be too large."""
+        if self.expected > self.max_vertices:
+            raise BudgetError(
+                f"the mesh would have about {self.expected:.3g} vertices, but max_vertices is "
+                f"{self.max_vertices:,}: ask for larger sizes, or allow more"
+            )
+
+    def check(self, n_vertices: int) -> None:
+        """Stop what has become too large although it was not expected to."""
+        if n_vertices > self.max_vertices:
+            raise BudgetError(
+                f"the mesh needs more than max_vertices = {self.max_vertices:,} vertices (about "
+                f"{self.expected:,} were predicted): ask for larger sizes, or allow more"
+            )
+
+    def progress(self, n_vertices: int) -> float:
+        """How much of the work of placing points is behind us, as a share of all work."""
+        return min(0.7, 0.05 + 0.65 * n_vertices / max(self.expected, 1))
 
 
 def triangulate_outline(domain: Domain, outline: Outline) -> _core.Mesher:
     """The constrained Delaunay triangulation of the cut boundary, without the outside."""
-    return _core.Mesher(
-        outline.points,
-        outline.tensors,
-        outline.held_by,
-        outline.pieces,
-        domain.holes,
-        domain.seeds,
-        domain.nesting,
-    )
+    try:
+        return _core.Mesher(
+            outline.points,
+            outline.tensors,
+            outline.held_by,
+            outline.pieces,
+            domain.holes,
+            domain.seeds,
+            domain.nesting,
+        )
+    except _core.Fault as fault:
+        *_, x, y = fault.args
+        raise DomainError(
+            f"unit pieces of the boundary meet near ({x:.17g}, {y:.17g}): the sizes asked for there "
+            "are as small as the spacing of floating-point numbers; ask for larger ones, or move "
+            "the domain nearer to the origin"
+        ) from None
 
 
 def place_ahead_of_front(
     mesher: _core.Mesher,
     field: ControlSpace,
     options: FrontPlacement,
-    max_vertices: int,
-    expected: int,
+    budget: Budget,
     report: Progress,
 ) -> None:
     """Build unit triangles layer by layer, until the front has met itself everywhere."""
@@ -205,16 +244,15 @@ def place_ahead_of_front(
         for _ in range(options.trials):
             front.refine(field(front.wanted()))
         mesher.insert_ahead(front, field(front.wanted()))
-        _check_size(mesher, max_vertices, expected)
-        report("placing points", min(0.7, 0.05 + 0.65 * mesher.vertex_count / max(expected, 1)))
+        budget.check(mesher.vertex_count)
+        report("placing points", budget.progress(mesher.vertex_count))
 
 
 def place_along_edges(
     mesher: _core.Mesher,
     field: ControlSpace,
     options: EdgePlacement,
-    max_vertices: int,
-    expected: int,
+    budget: Budget,
     report: Progress,
 ) -> None:
     """Cut long edges, sweep after sweep, until none is left that takes a point.
@@ -223,22 +261,17 @@ def place_along_edges(
     is evaluated exactly at all of them at once.
     """
     while True:
-        before = mesher.vertex_count
         edges = measure_fresh_edges(mesher, field, options.long_edge)
-        mesher.insert_along_edges(edges, options.long_edge, options.spacing, max_vertices)
-        if mesher.vertex_count == before:
-            return
-        _check_size(mesher, max_vertices, expected)
-        refresh(mesher, field)
-        report("placing points", min(0.7, 0.05 + 0.65 * mesher.vertex_count / max(expected, 1)))
-
-
-def _check_size(mesher: _core.Mesher, max_vertices: int, expected: int) -> None:
-    if mesher.vertex_count >= max_vertices:
-        raise BudgetError(
-            f"the mesh has reached max_vertices = {max_vertices:,} and is not yet fine enough "
-            f"(about {expected:,} vertices were predicted): ask for larger sizes, or allow more"
+        inserted = mesher.insert_along_edges(
+            edges, options.long_edge, options.spacing, budget.max_vertices
         )
+        if inserted < 0:
+            budget.check(budget.max_vertices + 1)
+        if not inserted:
+            return
+        budget.check(mesher.vertex_count)
+        refresh(mesher, field)
+        report("placing points", budget.progress(mesher.vertex_count))
 
 
 class Samples(ControlSpace):

@@ -31,7 +31,8 @@ std::vector<Segment> segments_in(const IndexPairs& array) {
 void expect_rows(std::size_t got, std::size_t wanted, const char* what) {
     if (got != wanted) {
         throw nb::value_error((std::string(what) + ": " + std::to_string(got) + " rows, expected " +
-                               std::to_string(wanted)).c_str());
+                               std::to_string(wanted))
+                                  .c_str());
     }
 }
 
@@ -61,23 +62,27 @@ EdgeSampler sampler_of(const Points& starts, const Tensors& start_tensors, const
     return sampler;
 }
 
-nb::tuple cut_into(const EdgeSampler& sampler, const Indices& parts) {
-    expect_rows(parts.shape(0), std::size_t(sampler.edge_count()), "parts");
-    const std::vector<FieldPoint> cuts = sampler.cut([&](Index edge, double) { return parts(edge); });
+// Points that cut every edge into unit pieces, the edge of each, and the number of parts per edge.
+nb::tuple cut_to_unit(const EdgeSampler& sampler) {
+    std::vector<FieldPoint> cuts;
     std::vector<double> points;
-    std::vector<Index> edges;
-    for (const FieldPoint& p : cuts) {
-        points.push_back(p.at.x), points.push_back(p.at.y);
-        edges.push_back(p.edge);
+    std::vector<Index> edges, parts;
+    for (Index e = 0; e < sampler.edge_count(); ++e) {
+        parts.push_back(Index(unit_parts(sampler.lengths()[e])));
+        cuts.clear();
+        sampler.cut(e, parts.back(), cuts);
+        for (const FieldPoint& p : cuts) points.push_back(p.at.x), points.push_back(p.at.y);
+        edges.insert(edges.end(), cuts.size(), e);
     }
-    return nb::make_tuple(to_numpy(std::move(points), {cuts.size(), 2}),
-                          to_numpy(std::move(edges), {cuts.size()}));
+    const std::size_t n = edges.size(), k = parts.size();
+    return nb::make_tuple(to_numpy(std::move(points), {n, 2}), to_numpy(std::move(edges), {n}),
+                          to_numpy(std::move(parts), {k}));
 }
 
 class Mesher {
   public:
-    // A constrained Delaunay triangulation of the outline; `held_by` per point: FIXED or the segment
-    // it may slide along.
+    // A constrained Delaunay triangulation of the outline; `held_by` per point: FIXED or the
+    // segment it may slide along.
     Mesher(const Points& points, const Tensors& tensors, const Indices& held_by,
            const IndexPairs& segments, const Points& holes, const Points& seeds, bool nesting) {
         const std::size_t n = points.shape(0);
@@ -88,8 +93,7 @@ class Mesher {
         const CarveOptions options{points_in(holes), points_in(seeds), nesting};
 
         nb::gil_scoped_release release;
-        ConstrainedTriangulation outline =
-            triangulate(at, pieces, options, poll_);
+        ConstrainedTriangulation outline = triangulate(at, pieces, options, poll_);
         mesh_.topology = std::move(outline.triangulation);
         constrained_ = std::move(outline.sub_edges);
         for (std::size_t i = 0; i < n; ++i)
@@ -123,7 +127,8 @@ class Mesher {
     Index insert_along_edges(const EdgesToMeasure& edges, double long_edge, double spacing,
                              Index most_vertices) {
         nb::gil_scoped_release release;
-        return adaptmesh::insert_along_edges(mesh_, edges, {long_edge, spacing}, most_vertices, poll_);
+        return adaptmesh::insert_along_edges(mesh_, edges, long_edge, spacing, most_vertices,
+                                             poll_);
     }
 
     Index insert_where_finer(const Points& points, const Tensors& tensors, double ratio,
@@ -241,31 +246,34 @@ void bind_mesher(nb::module_& m) {
                             "Measures edges by asking for the metric, and cuts them.")
         .def("wanted", &wanted, "Points (n, 2) where the metric is wanted next; none: done.")
         .def("feed", &feed, nb::arg("tensors"), "The metric (n, 3) at the wanted points.")
-        .def("lengths", [](const EdgeSampler& s) {
-            auto lengths = s.lengths();
-            const std::size_t n = lengths.size();
-            return to_numpy(std::move(lengths), {n});
-        })
-        .def("cut", &cut_into, nb::arg("parts"),
-             "Points that cut edge i into parts[i] equal metric shares, and the edge of each.");
+        .def("lengths",
+             [](const EdgeSampler& s) {
+                 auto lengths = s.lengths();
+                 const std::size_t n = lengths.size();
+                 return to_numpy(std::move(lengths), {n});
+             })
+        .def("cut", &cut_to_unit,
+             "Points that cut the edges into unit pieces, the edge of each, the parts of each "
+             "edge.");
     m.def("edge_sampler", &sampler_of, nb::arg("starts"), nb::arg("start_tensors"), nb::arg("ends"),
           nb::arg("end_tensors"), nb::arg("longest_chord"));
 
     nb::class_<EdgesToMeasure>(m, "EdgesToMeasure").def_ro("sampler", &EdgesToMeasure::sampler);
 
     nb::class_<Front>(m, "Front", "Builds unit triangles from the constraints inwards.")
-        .def("wanted", [](const Front& front) {
-            const std::size_t n = front.wanted_count();
-            return to_numpy(front.wanted(), {n, 2});
-        })
+        .def("wanted",
+             [](const Front& front) {
+                 const std::size_t n = front.wanted_count();
+                 return to_numpy(front.wanted(), {n, 2});
+             })
         .def("refine", [](Front& front, const Tensors& tensors) {
             expect_rows(tensors.shape(0), front.wanted_count(), "tensors at the wanted points");
             front.refine([&](std::size_t i) { return tensor_in(tensors, i); });
         });
 
     nb::class_<Mesher>(m, "Mesher", "A metric mesh and the stages that improve it, in place.")
-        .def(nb::init<const Points&, const Tensors&, const Indices&, const IndexPairs&, const Points&,
-                      const Points&, bool>(),
+        .def(nb::init<const Points&, const Tensors&, const Indices&, const IndexPairs&,
+                      const Points&, const Points&, bool>(),
              nb::arg("points"), nb::arg("tensors"), nb::arg("held_by"), nb::arg("segments"),
              nb::arg("holes"), nb::arg("seeds"), nb::arg("nesting"))
         .def_prop_ro("vertex_count", &Mesher::vertex_count)
@@ -294,4 +302,5 @@ void bind_mesher(nb::module_& m) {
         .def("labels", &Mesher::labels)
         .def("constrained_edges", &Mesher::constrained_edges);
     m.attr("FIXED") = FIXED;
+    m.attr("MAX_VERTICES") = MAX_TRIANGLES / 2;
 }

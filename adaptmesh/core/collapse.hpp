@@ -9,11 +9,8 @@
 namespace adaptmesh {
 
 struct CollapseOptions {
-    double short_edge = 0.70710678118654752;  // 1/sqrt(2): from here on an edge is not unit
-    double longest_new = 1.42;                // no new edge longer than this
-    double least_quality = 0.1;               // no new triangle worse than this, ...
-    double good_quality = 0.6;                // ... nor worse than this, unless ...
-    double quality_kept = 0.6;                // ... this share of the old worst is kept
+    double good_quality = 0.6;  // no new triangle worse than this, unless ...
+    double quality_kept = 0.6;  // ... this share of the old worst is kept
 };
 
 class Collapser {
@@ -24,7 +21,8 @@ class Collapser {
     // vertices vanish: the new triangles then cover the ball of `from` exactly, so that being
     // positive is all they need.
     bool try_collapse(Index from, Index to) {
-        if (mesh_.vertices[from].held_by != FREE || !mesh_.topology.ball(from, around_)) return false;
+        if (mesh_.vertices[from].held_by != FREE || !mesh_.topology.ball(from, around_))
+            return false;
         const Vertex& target = mesh_.vertices[to];
         double worst_old = 1, worst_new = 1;
         for (Place place : around_) {
@@ -32,10 +30,11 @@ class Collapser {
             const Index p = T.v[next(place.slot)], q = T.v[prev(place.slot)];
             worst_old = std::min(worst_old, mesh_.quality(place.triangle));
             if (p == to || q == to) continue;
-            const double quality = MetricMesh::quality(target, mesh_.vertices[p], mesh_.vertices[q]);
+            const double quality =
+                MetricMesh::quality(target, mesh_.vertices[p], mesh_.vertices[q]);
             worst_new = std::min(worst_new, quality);
             if (!mesh_.is_positive(to, p, q)) return false;
-            if (mesh_.length(to, p) > options_.longest_new) return false;
+            if (mesh_.length(to, p) > LONGEST_UNIT) return false;
         }
         if (worst_new < options_.good_quality && worst_new < options_.quality_kept * worst_old)
             return false;

@@ -22,11 +22,17 @@ namespace adaptmesh {
 
 using metrics::Tensor;
 
+// How many parts bring an edge of this length nearest to unit: n parts up to sqrt(n (n + 1)), where
+// n parts are as much too long as n + 1 are too short. Ties by rounding go to fewer.
+inline double unit_parts(double length) {
+    const double l = length * (1 - 1e-9);
+    return std::max(1.0, std::floor(0.5 * (1 + std::sqrt(1 + 4 * l * l))));
+}
+
 // A point at a unit distance along an edge, with the metric interpolated there.
 struct FieldPoint {
     Point at;
     Tensor metric;
-    Index edge;
 };
 
 class EdgeSampler {
@@ -94,15 +100,19 @@ class EdgeSampler {
     // Metric length of each edge, once all are measured.
     const std::vector<double>& lengths() const { return lengths_; }
 
-    // Cuts every edge that `count(edge, length)` wants in more than one part at equal metric shares.
-    template <typename Count>
-    std::vector<FieldPoint> cut(Count&& count) const {
-        std::vector<FieldPoint> out;
-        for (Index e = 0; e < edge_count(); ++e) {
-            const Index parts = count(e, lengths_[e]);
-            if (parts > 1) cut_edge(e, parts, out);
+    // Appends the points that cut an edge in `parts` at equal metric shares.
+    void cut(Index e, Index parts, std::vector<FieldPoint>& out) const {
+        const double share = lengths_[e] / parts;
+        Index piece = first_[e];
+        double before = 0, here = length(pieces_[piece]);
+        for (Index i = 1; i < parts; ++i) {
+            const double goal = i * share;
+            while (before + here < goal && piece + 1 < first_[e + 1]) {
+                before += here;
+                here = length(pieces_[++piece]);
+            }
+            out.push_back(point_in_piece(pieces_[piece], std::min(1.0, (goal - before) / here)));
         }
-        return out;
     }
 
   private:
@@ -138,28 +148,13 @@ class EdgeSampler {
         for (std::size_t e = 0; e < edges_.size(); ++e) first_[e + 1] += first_[e];
     }
 
-    void cut_edge(Index e, Index parts, std::vector<FieldPoint>& out) const {
-        const double share = lengths_[e] / parts;
-        Index piece = first_[e];
-        double before = 0, here = length(pieces_[piece]);
-        for (Index i = 1; i < parts; ++i) {
-            const double goal = i * share;
-            while (before + here < goal && piece + 1 < first_[e + 1]) {
-                before += here;
-                here = length(pieces_[++piece]);
-            }
-            out.push_back(point_in_piece(pieces_[piece], std::min(1.0, (goal - before) / here)));
-        }
-    }
-
     // The size is taken to be geometric along a piece: with r the ratio of the speeds at its ends,
     // the share s of its length is reached at log(1 + s (r - 1)) / log r.
     FieldPoint point_in_piece(const Chord& p, double share) const {
         const Point v = edges_[p.edge].vector;
         const double r = std::sqrt(p.m1.q(v.x, v.y) / p.m0.q(v.x, v.y));
-        const double s =
-            std::abs(r - 1) < 1e-6 ? share : std::log1p(share * (r - 1)) / std::log(r);
-        return {point(p.edge, p.t0 + s * (p.t1 - p.t0)), metrics::log_mean(p.m0, p.m1, s), p.edge};
+        const double s = std::abs(r - 1) < 1e-6 ? share : std::log1p(share * (r - 1)) / std::log(r);
+        return {point(p.edge, p.t0 + s * (p.t1 - p.t0)), metrics::log_mean(p.m0, p.m1, s)};
     }
 
     double longest_chord_;

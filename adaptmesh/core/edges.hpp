@@ -13,13 +13,6 @@
 
 namespace adaptmesh {
 
-struct EdgePlacement {
-    // An edge from this length on is cut: into two it is then nearer to unit than whole.
-    double long_edge = 1.5;
-    // A field point nearer than this to a vertex of the mesh is refused.
-    double spacing = 0.75;
-};
-
 // Closed-form lengths that are right to this share are left as they are.
 constexpr double WORTH_CORRECTING = 0.01;
 
@@ -29,12 +22,10 @@ constexpr double LONGEST_CHORD = 4.0;
 // Edges handed out for measuring.
 struct EdgesToMeasure {
     EdgeSampler sampler;
-    std::vector<Index> triangle;  // one that has the edge
-    std::vector<Index> a, b;      // its ends
+    std::vector<Index> a, b;  // their ends
 
     void add(const MetricMesh& mesh, Place edge) {
         const Triangle& T = mesh.triangle(edge.triangle);
-        triangle.push_back(edge.triangle);
         a.push_back(T.v[next(edge.slot)]);
         b.push_back(T.v[prev(edge.slot)]);
         const Vertex &from = mesh.vertices[a.back()], &to = mesh.vertices[b.back()];
@@ -45,7 +36,7 @@ struct EdgesToMeasure {
 // The interior edges that appeared since the last call; those shorter than `uncut_below` will only
 // be measured.
 inline EdgesToMeasure take_fresh_edges(MetricMesh& mesh, double uncut_below) {
-    EdgesToMeasure out{EdgeSampler(LONGEST_CHORD, uncut_below), {}, {}, {}};
+    EdgesToMeasure out{EdgeSampler(LONGEST_CHORD, uncut_below), {}, {}};
     auto& triangles = mesh.topology.triangles;
     for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
         if (!(triangles[t].fresh & TO_MEASURE) || mesh.topology.is_dead(t)) continue;
@@ -63,9 +54,11 @@ inline EdgesToMeasure take_fresh_edges(MetricMesh& mesh, double uncut_below) {
 // Lets the mesh know the measured lengths.
 inline void correct_lengths(MetricMesh& mesh, const EdgesToMeasure& edges) {
     for (std::size_t i = 0; i < edges.a.size(); ++i) {
-        const double closed = MetricMesh::length(mesh.vertices[edges.a[i]], mesh.vertices[edges.b[i]]);
+        const double closed =
+            MetricMesh::length(mesh.vertices[edges.a[i]], mesh.vertices[edges.b[i]]);
         const double ratio = edges.sampler.lengths()[i] / closed;
-        if (std::abs(ratio - 1) > WORTH_CORRECTING) mesh.corrections.set(edges.a[i], edges.b[i], ratio);
+        if (std::abs(ratio - 1) > WORTH_CORRECTING)
+            mesh.corrections.set(edges.a[i], edges.b[i], ratio);
     }
 }
 
@@ -88,24 +81,30 @@ Index insert_where_finer(MetricMesh& mesh, const std::vector<Point>& points, Ten
     return inserted;
 }
 
-// Puts the field points of the measured edges into the mesh, up to `most_vertices` in all; returns
-// how many it took.
+// Puts field points into the mesh along the measured edges from length `long_edge` on, up to
+// `most_vertices` in all; returns how many it took, or NONE
+// if there is no room. An edge that the points of others have made
+// vanish is passed over: what took its place is measured in the next sweep.
 template <typename Poll>
-Index insert_along_edges(MetricMesh& mesh, const EdgesToMeasure& edges, const EdgePlacement& options,
-                         Index most_vertices, Poll& poll) {
-    const auto parts = [&](Index, double length) {
-        return length < options.long_edge ? Index(1) : Index(std::max(2.0, std::floor(length + 0.5)));
-    };
-    PointInserter inserter(mesh, options.spacing);
-    Index inserted = 0, tried = 0, edge = NONE, near = NONE;
-    for (const FieldPoint& p : edges.sampler.cut(parts)) {
-        if (++tried % 1024 == 0) poll();
-        if (Index(mesh.vertices.size()) >= most_vertices) break;
-        if (p.edge != edge) {  // along one edge, each point is near the one before
-            edge = p.edge;
-            near = edges.triangle[edge];
-        }
-        inserted += inserter.insert(p.at, p.metric, near) == PointInserter::Outcome::inserted;
+Index insert_along_edges(MetricMesh& mesh, const EdgesToMeasure& edges, double long_edge,
+                         double spacing, Index most_vertices, Poll& poll) {
+    PointInserter inserter(mesh, spacing);
+    std::vector<FieldPoint> points;
+    std::vector<Place> scratch;
+    Index inserted = 0;
+    for (Index e = 0; e < edges.sampler.edge_count(); ++e) {
+        if (e % 1024 == 0) poll();
+        const double length = edges.sampler.lengths()[e];
+        if (length < long_edge) continue;
+        const Place place = mesh.topology.find_edge(edges.a[e], edges.b[e], scratch);
+        if (place.triangle == NONE) continue;
+        const double room = double(most_vertices) - double(mesh.vertices.size());
+        if (unit_parts(length) > room) return NONE;
+        points.clear();
+        edges.sampler.cut(e, Index(unit_parts(length)), points);
+        Index near = place.triangle;
+        for (const FieldPoint& p : points)
+            inserted += inserter.insert(p.at, p.metric, near) == PointInserter::Outcome::inserted;
     }
     return inserted;
 }

@@ -1,11 +1,12 @@
 // Points ahead of a front: unit triangles are built on the edges that bound what is done, layer
 // after layer, from the constraints inwards.
 //
-// The front is a list of directed edges; each has a finished triangle (or a constraint) on its right
-// and looks to its left:
+// The front is a list of directed edges; each has a finished triangle (or a constraint) on its
+// right and looks to its left:
 //
 //          c                P
-//         / \              / \         if the triangle (a, b, c) ahead has sides short enough, it is
+//         / \              / \         if the triangle (a, b, c) ahead has sides short enough, it
+//         is
 //        /   \    or      /   \        accepted and (c, b), (a, c) join the front; else the point P
 //       a --- b          a --- b       that makes a unit triangle is wanted
 //
@@ -65,11 +66,14 @@ class Front {
     // Finds the points anew with the metrics at the wanted places.
     template <typename TensorAt>
     void refine(TensorAt&& tensor_at) {
+        std::size_t kept = 0;
         for (std::size_t i = 0; i < wanted_.size(); ++i) {
-            Wanted& w = wanted_[i];
+            Wanted w = wanted_[i];
             const Tensor m = mesh_.vertices[w.edge.a].metric + mesh_.vertices[w.edge.b].metric;
             w.at = apex(w.edge, (1.0 / 3) * (m + tensor_at(i)));
+            if (is_in_sight(w)) wanted_[kept++] = w;
         }
+        wanted_.resize(kept);
     }
 
     // Puts the points into the mesh, each with the metric there; new edges join the front.
@@ -80,9 +84,7 @@ class Front {
         for (std::size_t i = 0; i < wanted_.size(); ++i) {
             if (i % 1024 == 0) poll();
             const Edge e = wanted_[i].edge;
-            Index near = mesh_.topology.find_edge(e.a, e.b, ball_).triangle;
-            if (near == NONE) continue;
-            if (inserter.insert(wanted_[i].at, tensor_at(i), near) !=
+            if (inserter.insert(wanted_[i].at, tensor_at(i), wanted_[i].near) !=
                 PointInserter::Outcome::inserted)
                 continue;
             const Index p = Index(mesh_.vertices.size()) - 1;
@@ -101,6 +103,7 @@ class Front {
     struct Wanted {
         Edge edge;
         Point at;
+        Index near;  // the triangle it lies in
     };
 
     // Triangles accepted of late, and how many unit triangles their metric area is worth. Where the
@@ -143,12 +146,27 @@ class Front {
             return;
         }
         const Tensor m = mesh_.vertices[e.a].metric + mesh_.vertices[e.b].metric;
-        wanted_.push_back({e, apex(e, 0.5 * m)});
+        Wanted w{e, apex(e, 0.5 * m), place.triangle};
+        if (is_in_sight(w)) wanted_.push_back(w);
+    }
+
+    // Whether the point lies in the domain, and no constraint hides it from its edge: the metric is
+    // asked for nowhere else.
+    bool is_in_sight(Wanted& w) const {
+        if (!std::isfinite(w.at.x) || !std::isfinite(w.at.y)) return false;
+        const Location where = locate(
+            mesh_.topology, [this](Index v) { return mesh_.at(v); }, w.at, w.near,
+            Walls::locked_edges);
+        w.near = where.triangle;
+        return where.where == Where::in_triangle || where.where == Where::on_edge;
     }
 
     // The middle of (a, b) plus the height along the M-orthogonal w of e, for sides of the target
-    // length; |w|_M = sqrt(det M) |e|_M.
-    Point apex(Edge edge, const Tensor& m) const {
+    // length. Of M only the shape gives w its direction: it is scaled so that huge and tiny sizes
+    // neither overflow nor vanish.
+    Point apex(Edge edge, const Tensor& metric) const {
+        const double scale = 1 / (metric.a + metric.c);
+        const Tensor m = scale * metric;
         const Point a = mesh_.at(edge.a), b = mesh_.at(edge.b);
         const double ex = b.x - a.x, ey = b.y - a.y;
         const double wx = -(m.b * ex + m.c * ey), wy = m.a * ex + m.b * ey;
@@ -157,7 +175,7 @@ class Front {
         const double square = target * target - 0.25 * length * length;
         const double height =
             std::min(std::max(std::sqrt(std::max(square, 0.0)), options_.lowest), options_.highest);
-        const double share = height / std::sqrt(m.q(wx, wy));
+        const double share = height * std::sqrt(scale / m.q(wx, wy));
         return {0.5 * (a.x + b.x) + share * wx, 0.5 * (a.y + b.y) + share * wy};
     }
 

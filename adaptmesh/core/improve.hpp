@@ -40,14 +40,15 @@ std::vector<MeasuredEdge> edges_with_length(const MetricMesh& mesh, const Wanted
 // Shortest first; returns how many vertices vanished.
 template <typename Poll>
 Index collapse_short_edges(MetricMesh& mesh, const CollapseOptions& options, Poll& poll) {
-    auto edges = edges_with_length(mesh, [&](double l) { return l < options.short_edge; });
+    auto edges = edges_with_length(mesh, [&](double l) { return l < SHORTEST_UNIT; });
     std::sort(edges.begin(), edges.end(), [](auto& e, auto& f) { return e.length < f.length; });
     Collapser collapser(mesh, options);
     std::vector<Place> scratch;
     Index collapsed = 0, tried = 0;
     for (const MeasuredEdge& e : edges) {
         if (++tried % 1024 == 0) poll();
-        if (mesh.topology.triangle_at(e.a) == NONE || mesh.topology.triangle_at(e.b) == NONE) continue;
+        if (mesh.topology.triangle_at(e.a) == NONE || mesh.topology.triangle_at(e.b) == NONE)
+            continue;
         if (mesh.topology.find_edge(e.a, e.b, scratch).triangle == NONE) continue;
         collapsed += collapser.try_collapse(e.a, e.b) || collapser.try_collapse(e.b, e.a);
     }
@@ -57,7 +58,7 @@ Index collapse_short_edges(MetricMesh& mesh, const CollapseOptions& options, Pol
 // Longest first; returns how many vertices were added.
 template <typename Poll>
 Index split_long_edges(MetricMesh& mesh, const SplitOptions& options, Poll& poll) {
-    auto edges = edges_with_length(mesh, [&](double l) { return l > options.long_edge; });
+    auto edges = edges_with_length(mesh, [&](double l) { return l > LONGEST_UNIT; });
     std::sort(edges.begin(), edges.end(), [](auto& e, auto& f) { return e.length > f.length; });
     Splitter splitter(mesh, options);
     std::vector<Place> scratch;

@@ -1,9 +1,11 @@
 // A triangulation whose vertices carry a position and a metric, and what is measured on it.
 //
 // Lengths are closed form: Simpson's rule with the metrics of the two ends and, half way, their
-// geometric mean (metrics::length), corrected where the true length was measured. Quality is that of the mean metric of the three vertices.
+// geometric mean (metrics::length), corrected where the true length was measured. Quality is that
+// of the mean metric of the three vertices.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -20,6 +22,16 @@ using metrics::Tensor;
 // What holds a vertex: nothing, everything, or the segment (its number) it may slide along.
 constexpr Index FREE = -1;
 constexpr Index FIXED = -2;
+
+// Unit edges are those between 1/sqrt(2) and sqrt(2), both included whatever the rounding: a grid
+// of squares of side one is a unit mesh.
+constexpr double SHORTEST_UNIT = 0.70710678118654752 * (1 - 1e-9);
+constexpr double LONGEST_UNIT = 1.4142135623730950 * (1 + 1e-9);
+
+// How far an edge is from unit, as a ratio of at least 1.
+inline double ratio_to_unit(double length) {
+    return std::max(length, 1 / length);
+}
 
 struct Vertex {
     Point at;

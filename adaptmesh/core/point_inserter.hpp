@@ -18,8 +18,8 @@ class PointInserter {
     // Tries to put a point into the mesh, walking to it from the triangle `near`, which becomes the
     // one where the walk ended. The new vertex is the last one.
     Outcome insert(Point at, const Tensor& metric, Index& near) {
-        const Location where = locate(mesh_.topology, [this](Index v) { return mesh_.at(v); }, at, near,
-                                      Walls::locked_edges);
+        const Location where = locate(
+            mesh_.topology, [this](Index v) { return mesh_.at(v); }, at, near, Walls::locked_edges);
         near = where.triangle;
         if (where.where == Where::on_vertex) return Outcome::too_near;
         if (where.where == Where::outside) return Outcome::not_reached;

@@ -2,8 +2,8 @@
 // equilateral, in the metric.
 //
 // While a vertex moves, the metric it would have is read from its own ball: P1 and log-Euclidean
-// on the triangles around the place it started from. The caller evaluates the metric again, exactly,
-// where vertices have come to rest.
+// on the triangles around the place it started from. The caller evaluates the metric again,
+// exactly, where vertices have come to rest.
 #pragma once
 
 #include <algorithm>
@@ -44,9 +44,11 @@ class Smoother {
         Point step = step_to_ideal(old);
         const double size = std::sqrt(old.metric.q(step.x, step.y));
         if (size < SHORTEST_STEP) return false;
-        if (size > LONGEST_STEP) step = {step.x * LONGEST_STEP / size, step.y * LONGEST_STEP / size};
+        if (size > LONGEST_STEP)
+            step = {step.x * LONGEST_STEP / size, step.y * LONGEST_STEP / size};
         for (double share : {1.0, 0.4, 0.16}) {
-            if (try_move(v, {old.at.x + share * step.x, old.at.y + share * step.y}, cost)) return true;
+            if (try_move(v, {old.at.x + share * step.x, old.at.y + share * step.y}, cost))
+                return true;
         }
         return false;
     }
@@ -74,10 +76,10 @@ class Smoother {
 
   private:
     static constexpr double SIXTH_OF_TURN = 1.0471975511965977;  // pi / 3; M_PI is not standard
-    static constexpr double SHORTEST_STEP = 1e-3;  // not worth it, in metric units
+    static constexpr double SHORTEST_STEP = 1e-3;                // not worth it, in metric units
     static constexpr double LONGEST_STEP = 0.5;
-    static constexpr double WORTHWHILE = 0.9999;   // the cost must fall at least to this share
-    static constexpr double FLATTEST = 1e-6;       // quality below which a place is refused
+    static constexpr double WORTHWHILE = 0.9999;  // the cost must fall at least to this share
+    static constexpr double FLATTEST = 1e-6;      // quality below which a place is refused
 
     // The ball of v: sides_[i], sides_[i + 1] are the ends of the edge opposite v in triangle i.
     bool gather(Index v) {
@@ -101,7 +103,8 @@ class Smoother {
             const Vertex &a = mesh_.vertices[sides_[i]], &b = mesh_.vertices[sides_[i + 1]];
             const double q = MetricMesh::quality(p, a, b);
             if (q <= FLATTEST) return INFINITY;
-            cost += BallCost::triangle(q) + BallCost::edge(corrections_[i] * MetricMesh::length(p, a));
+            cost +=
+                BallCost::triangle(q) + BallCost::edge(corrections_[i] * MetricMesh::length(p, a));
         }
         return cost;
     }

@@ -11,11 +11,8 @@
 namespace adaptmesh {
 
 struct SplitOptions {
-    double long_edge = 1.4142135623730950;  // sqrt(2): from here on an edge is not unit
-    double nearest = 0.6;                   // no new edge shorter than this, unless ...
-    double very_long = 2.5;                 // ... the edge is longer than this
-    double good_quality = 0.3;              // no new triangle worse than this, unless ...
-    double quality_kept = 0.3;              // ... this share of the old worst is kept
+    double good_quality = 0.3;  // no new triangle worse than this, unless ...
+    double quality_kept = 0.3;  // ... this share of the old worst is kept
 };
 
 class Splitter {
@@ -28,11 +25,15 @@ class Splitter {
         const Vertex &a = mesh_.vertices[q.a], &b = mesh_.vertices[q.b];
         const Vertex &c = mesh_.vertices[q.c], &d = mesh_.vertices[q.d];
         const Vertex p = middle(b, c);
-        if (length < options_.very_long &&
-            std::min(MetricMesh::length(p, a), MetricMesh::length(p, d)) < options_.nearest)
+        // None of the new edges may be as far from unit as the one that goes.
+        const double now_off = ratio_to_unit(length);
+        if (ratio_to_unit(0.5 * length) >= now_off ||
+            ratio_to_unit(MetricMesh::length(p, a)) >= now_off ||
+            ratio_to_unit(MetricMesh::length(p, d)) >= now_off)
             return false;
-        const double then = std::min(std::min(MetricMesh::quality(a, b, p), MetricMesh::quality(a, p, c)),
-                                     std::min(MetricMesh::quality(d, c, p), MetricMesh::quality(d, p, b)));
+        const double then =
+            std::min(std::min(MetricMesh::quality(a, b, p), MetricMesh::quality(a, p, c)),
+                     std::min(MetricMesh::quality(d, c, p), MetricMesh::quality(d, p, b)));
         const double now = std::min(MetricMesh::quality(a, b, c), MetricMesh::quality(d, c, b));
         if (then < options_.good_quality && then < options_.quality_kept * now) return false;
         if (orient2d(a.at, b.at, p.at) <= 0 || orient2d(a.at, p.at, c.at) <= 0 ||
@@ -48,13 +49,14 @@ class Splitter {
     }
 
   private:
-    // Half way in the metric, the size taken to be geometric along the edge: log((1 + r) / 2) / log r
-    // with r the ratio of the speeds at its ends.
+    // Half way in the metric, the size taken to be geometric along the edge: log((1 + r) / 2) / log
+    // r with r the ratio of the speeds at its ends.
     static Vertex middle(const Vertex& b, const Vertex& c) {
         const double dx = c.at.x - b.at.x, dy = c.at.y - b.at.y;
         const double r = std::sqrt(c.metric.q(dx, dy) / b.metric.q(dx, dy));
         const double s = std::abs(r - 1) < 1e-3 ? 0.5 : std::log(0.5 * (1 + r)) / std::log(r);
-        return Vertex::make({b.at.x + s * dx, b.at.y + s * dy}, metrics::log_mean(b.metric, c.metric, s));
+        return Vertex::make({b.at.x + s * dx, b.at.y + s * dy},
+                            metrics::log_mean(b.metric, c.metric, s));
     }
 
     MetricMesh& mesh_;

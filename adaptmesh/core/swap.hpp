@@ -105,7 +105,8 @@ Index swap_everywhere(MetricMesh& mesh, const Criterion& criterion, int most_pas
             if (mesh.topology.is_dead(t)) continue;
             for (int slot = 0; slot < 3; ++slot) {
                 // each edge once; the slots of t mean other edges after a flip
-                if (triangle_of(mesh.triangle(t).n[slot]) < t && try_flip(mesh, {t, slot}, criterion)) {
+                if (triangle_of(mesh.triangle(t).n[slot]) < t &&
+                    try_flip(mesh, {t, slot}, criterion)) {
                     ++flips;
                     break;
                 }

@@ -222,14 +222,15 @@ class Triangulation {
         return {t2, u2};
     }
 
-    // Pulls vertex `from` into vertex `to`, a neighbour of it: the triangles on their edge vanish, the
-    // others around `from` get `to` for a corner. `around` is the ball of `from`.
+    // Pulls vertex `from` into vertex `to`, a neighbour of it: the triangles on their edge vanish,
+    // the others around `from` get `to` for a corner. `around` is the ball of `from`.
     //
     //        q---r                q---r          (from, p, to) and (from, to, q) vanish: the edges
     //       / \ / \              / \ / \         (p, to) and (p, from) become one, so do (q, to)
     //      s--from-to    ->     s----to          and (q, from), locked if either was.
     //       \ / \ /              \ / \ /
-    //        t---p                t---p          Vanished triangles are dead until they are dropped.
+    //        t---p                t---p          Vanished triangles are dead until they are
+    //        dropped.
     void collapse(const std::vector<Place>& around, Index from, Index to) {
         for (Place place : around) {
             Triangle& T = triangles[place.triangle];
