@@ -25,6 +25,10 @@ Progress = Callable[[str, float], None]
 # A sample with this many times the density sqrt(det M) of all corners of its triangle was missed.
 FAR_FINER = 2.0
 
+# The outline is triangulated for the Euclidean plane; under a slanted and strongly anisotropic metric
+# it takes many passes of swaps until its edges are as short as they can be. Most need two.
+OUTLINE_SWAPS = 200
+
 PLACEMENTS = ("front", "edges")
 
 
@@ -146,7 +150,7 @@ def generate(
     report("cutting the boundary", 0.02)
     outline = cut_segments(domain, field, budget.max_vertices)
     mesher = triangulate_outline(domain, outline)
-    mesher.swap()
+    mesher.swap(most_passes=OUTLINE_SWAPS)
     report("placing points", 0.05)
     if placement == "front":
         place_ahead_of_front(mesher, field, FrontPlacement(), budget, report)

@@ -140,9 +140,9 @@ class Mesher {
             mesh_, at, [&](std::size_t i) { return tensor_in(tensors, i); }, ratio, spacing, poll_);
     }
 
-    Index swap() {
+    Index swap(int most_passes) {
         nb::gil_scoped_release release;
-        return swap_everywhere(mesh_, DelaunayCriterion{}, 5, poll_);
+        return swap_everywhere(mesh_, DelaunayCriterion{}, most_passes, poll_);
     }
 
     Index swap_worst(double below) {
@@ -286,7 +286,7 @@ void bind_mesher(nb::module_& m) {
              nb::keep_alive<0, 1>())
         .def("advance", &Mesher::advance, nb::arg("front"))
         .def("insert_ahead", &Mesher::insert_ahead, nb::arg("front"), nb::arg("tensors"))
-        .def("swap", &Mesher::swap)
+        .def("swap", &Mesher::swap, nb::arg("most_passes") = 5)
         .def("swap_worst", &Mesher::swap_worst, nb::arg("below"))
         .def("smooth", &Mesher::smooth)
         .def("collapse_short_edges", &Mesher::collapse_short_edges)

@@ -111,22 +111,25 @@ class MetricMesh {
 
     bool is_positive(Index a, Index b, Index c) const { return orient2d(at(a), at(b), at(c)) > 0; }
 
-    // Whether vertex d lies inside the circle through the counter-clockwise a, b, c in the constant
-    // metric m. With coordinates relative to d and q(u) = u' m u, the sign of
+    // Whether point d lies inside the circle through the counter-clockwise a, b, c in the constant
+    // metric m. With m = L L' and u = L' (coordinates relative to d), the sign of the usual
     //
-    //     | xa ya q(a) |
-    //     | xb yb q(b) |
-    //     | xc yc q(c) |
+    //     | xa ya xa^2+ya^2 |
+    //     | xb yb xb^2+yb^2 |      a sum of squares loses far less to cancellation under slanted
+    //     | xc yc xc^2+yc^2 |      anisotropy than the quadratic form of m does.
     //
-    // No circumcentre, no division. `margin`, relative to the size of the terms, keeps ties apart.
+    // `margin`, relative to the size of the terms, keeps ties apart.
     static bool in_circle(const Tensor& m, Point a, Point b, Point c, Point d, double margin) {
-        const double ax = a.x - d.x, ay = a.y - d.y;
-        const double bx = b.x - d.x, by = b.y - d.y;
-        const double cx = c.x - d.x, cy = c.y - d.y;
-        const double ta = m.q(ax, ay) * (bx * cy - by * cx);
-        const double tb = m.q(bx, by) * (cx * ay - cy * ax);
-        const double tc = m.q(cx, cy) * (ax * by - ay * bx);
-        return ta + tb + tc > margin * (std::abs(ta) + std::abs(tb) + std::abs(tc));
+        const double l11 = std::sqrt(m.a), l21 = m.b / l11, l22 = metrics::sqrt_det(m) / l11;
+        const auto image = [&](Point p) {
+            const double dx = p.x - d.x, dy = p.y - d.y;
+            return Point{l11 * dx + l21 * dy, l22 * dy};
+        };
+        const Point u = image(a), v = image(b), w = image(c);
+        const double tu = (u.x * u.x + u.y * u.y) * (v.x * w.y - v.y * w.x);
+        const double tv = (v.x * v.x + v.y * v.y) * (w.x * u.y - w.y * u.x);
+        const double tw = (w.x * w.x + w.y * w.y) * (u.x * v.y - u.y * v.x);
+        return tu + tv + tw > margin * (std::abs(tu) + std::abs(tv) + std::abs(tw));
     }
 };
 
