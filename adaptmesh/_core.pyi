@@ -7,7 +7,6 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Bools = NDArray[np.bool_]
 
-FIXED: int
 MAX_VERTICES: int
 
 class Fault(Exception):  # noqa: N818
@@ -33,7 +32,7 @@ class EdgeSampler:
     def wanted(self) -> Floats: ...
     def feed(self, tensors: Floats) -> None: ...
     def lengths(self) -> Floats: ...
-    def cut(self) -> tuple[Floats, Ints, Ints]: ...
+    def cut(self) -> tuple[Floats, Ints]: ...
 
 class EdgesToMeasure:
     @property
@@ -48,11 +47,13 @@ class Mesher:
         self,
         points: Floats,
         tensors: Floats,
-        held_by: Ints,
         segments: Ints,
         holes: Floats,
         seeds: Floats,
         nesting: bool,
+    ) -> None: ...
+    def cut_outline(
+        self, ends: Ints, segments: Ints, cuts: Floats, tensors: Floats, piece: Ints
     ) -> None: ...
     @property
     def vertex_count(self) -> int: ...

@@ -23,26 +23,26 @@ LONGEST_CHORD = 0.125
 
 
 @dataclass(frozen=True)
-class Outline:
-    """The points and pieces of all segments: what the triangulation starts from.
+class Cuts:
+    """The points of a domain with their metric, and the unit points between them.
 
     Attributes
     ----------
-    points, tensors : (n, 2), (n, 3) arrays
-        The points of the domain, then the cuts; the metric at each.
-    held_by : (n,) array of int32
-        ``FIXED`` for the points of the domain, the segment it lies on for a cut.
-    pieces : (q, 2) array of int32
-        Point numbers of each piece, in the direction of its segment.
-    segment : (q,) array of int32
-        The segment that each piece is part of.
+    tensors : (n, 3) array
+        The metric at the points of the domain.
+    ends : (p, 2) array of int32
+        The pieces of the domain, each in the direction in which it is cut.
+    points, point_tensors : (c, 2), (c, 3) arrays
+        The cuts, and the metric at each.
+    piece : (c,) array of int32
+        The piece that each cut lies on; those of a piece are in order.
     """
 
-    points: Floats
     tensors: Floats
-    held_by: Ints
-    pieces: Ints
-    segment: Ints
+    ends: Ints
+    points: Floats
+    point_tensors: Floats
+    piece: Ints
 
 
 def measure_edges(sampler: _core.EdgeSampler, field: ControlSpace) -> Floats:
@@ -53,7 +53,7 @@ def measure_edges(sampler: _core.EdgeSampler, field: ControlSpace) -> Floats:
     return lengths
 
 
-def cut_segments(domain: Domain, field: ControlSpace, most_points: int) -> Outline:
+def cut_segments(domain: Domain, field: ControlSpace, most_points: int) -> Cuts:
     """Cut every segment of the domain into pieces of (nearly) unit metric length.
 
     A segment, or a part of one between points that lie on it, of length L becomes the n equal
@@ -73,8 +73,8 @@ def cut_segments(domain: Domain, field: ControlSpace, most_points: int) -> Outli
             f"the boundary alone would have about {total:.3g} vertices, but max_vertices is "
             f"{most_points:,}: ask for larger sizes, or allow more"
         )
-    cuts, piece, parts = sampler.cut()
-    return _join(domain, tensors, ends, parts, cuts, piece, field(cuts))
+    points, piece = sampler.cut()
+    return Cuts(tensors, ends, points, field(points), piece)
 
 
 def _canonical(domain: Domain) -> Ints:
@@ -83,34 +83,3 @@ def _canonical(domain: Domain) -> Ints:
     turned = (p[:, 0] > q[:, 0]) | ((p[:, 0] == q[:, 0]) & (p[:, 1] > q[:, 1]))
     out: Ints = np.where(turned[:, None], domain.pieces[:, ::-1], domain.pieces)
     return out
-
-
-def _join(
-    domain: Domain,
-    tensors: Floats,
-    ends: Ints,
-    parts: Ints,
-    cuts: Floats,
-    piece: Ints,
-    cut_tensors: Floats,
-) -> Outline:
-    """Number the cuts after the points of the domain, and chain them along their pieces."""
-    n, k = len(domain.points), len(ends)
-    # The chain of a piece: its start, its cuts, its end; all chains one behind the other.
-    chain_start = np.concatenate([[0], np.cumsum(parts + 1)])
-    chains = np.empty(chain_start[-1], np.int32)
-    chains[chain_start[:-1]] = ends[:, 0]
-    chains[chain_start[1:] - 1] = ends[:, 1]
-    is_cut = np.ones(len(chains), bool)
-    is_cut[chain_start[:-1]] = is_cut[chain_start[1:] - 1] = False
-    chains[is_cut] = n + np.arange(len(cuts))
-
-    owner = np.repeat(np.arange(k, dtype=np.int32), parts + 1)
-    inside = owner[:-1] == owner[1:]
-    return Outline(
-        points=np.concatenate([domain.points, cuts]),
-        tensors=np.concatenate([tensors, cut_tensors]),
-        held_by=np.concatenate([np.full(n, _core.FIXED, np.int32), domain.piece_segments[piece]]),
-        pieces=np.stack([chains[:-1], chains[1:]], axis=1)[inside],
-        segment=domain.piece_segments[owner[:-1][inside]],
-    )

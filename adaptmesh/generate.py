@@ -14,7 +14,7 @@ from metrics import ControlSpace
 from numpy.typing import NDArray
 
 from . import _core
-from .boundary import Outline, cut_segments, measure_edges
+from .boundary import Cuts, cut_segments, measure_edges
 from .domain import Domain
 from .errors import BudgetError, DomainError
 from .mesh import Mesh
@@ -25,8 +25,8 @@ Progress = Callable[[str, float], None]
 # A sample with this many times the density sqrt(det M) of all corners of its triangle was missed.
 FAR_FINER = 2.0
 
-# The outline is triangulated for the Euclidean plane; under a slanted and strongly anisotropic metric
-# it takes many passes of swaps until its edges are as short as they can be. Most need two.
+# The points of the domain are triangulated for the Euclidean plane; under a slanted and strongly
+# anisotropic metric it can take many passes of swaps until that is metric Delaunay. Most need two.
 OUTLINE_SWAPS = 200
 
 PLACEMENTS = ("front", "edges")
@@ -148,9 +148,8 @@ def generate(
     budget = Budget(max_vertices, predict(domain, samples))
     budget.check_prediction()
     report("cutting the boundary", 0.02)
-    outline = cut_segments(domain, field, budget.max_vertices)
-    mesher = triangulate_outline(domain, outline)
-    mesher.swap(most_passes=OUTLINE_SWAPS)
+    cuts = cut_segments(domain, field, budget.max_vertices)
+    mesher = triangulate_outline(domain, cuts)
     report("placing points", 0.05)
     if placement == "front":
         place_ahead_of_front(mesher, field, FrontPlacement(), budget, report)
@@ -159,7 +158,7 @@ def generate(
         place_along_edges(mesher, field, EdgePlacement(), budget, report)
     optimise(mesher, field, Optimisation(), report)
     report("done", 1.0)
-    return finished_mesh(domain, outline, mesher)
+    return finished_mesh(domain, mesher)
 
 
 def predict(domain: Domain, metric: Any) -> int:
@@ -214,25 +213,16 @@ class Budget:
         return min(0.7, 0.05 + 0.65 * n_vertices / max(self.expected, 1))
 
 
-def triangulate_outline(domain: Domain, outline: Outline) -> _core.Mesher:
-    """The constrained Delaunay triangulation of the cut boundary, without the outside."""
-    try:
-        return _core.Mesher(
-            outline.points,
-            outline.tensors,
-            outline.held_by,
-            outline.pieces,
-            domain.holes,
-            domain.seeds,
-            domain.nesting,
-        )
-    except _core.Fault as fault:
-        *_, x, y = fault.args
-        raise DomainError(
-            f"unit pieces of the boundary meet near ({x:.17g}, {y:.17g}): the sizes asked for there "
-            "are as small as the spacing of floating-point numbers; ask for larger ones, or move "
-            "the domain nearer to the origin"
-        ) from None
+def triangulate_outline(domain: Domain, cuts: Cuts) -> _core.Mesher:
+    """The constrained triangulation of the domain's points, metric Delaunay, then of the cuts too."""
+    mesher = _core.Mesher(
+        domain.points, cuts.tensors, domain.segments, domain.holes, domain.seeds, domain.nesting
+    )
+    mesher.swap(most_passes=OUTLINE_SWAPS)
+    mesher.cut_outline(
+        cuts.ends, domain.piece_segments, cuts.points, cuts.point_tensors, cuts.piece
+    )
+    return mesher
 
 
 def place_ahead_of_front(
@@ -348,14 +338,14 @@ def optimise(
     mesher.compact()
 
 
-def finished_mesh(domain: Domain, outline: Outline, mesher: _core.Mesher) -> Mesh:
-    edges, piece_segment = mesher.constrained_edges()
+def finished_mesh(domain: Domain, mesher: _core.Mesher) -> Mesh:
+    edges, segment = mesher.constrained_edges()
     return Mesh(
         points=mesher.points(),
         triangles=mesher.triangles(),
         regions=domain.region_of_label(mesher.labels()),
         edges=edges,
-        edge_tags=domain.segment_tags[outline.segment[piece_segment]],
+        edge_tags=domain.segment_tags[segment],
         names=domain.names,
         region_names=domain.region_names,
         domain=domain,

@@ -4,6 +4,7 @@
 #include "adaptmesh/core/front.hpp"
 #include "adaptmesh/core/improve.hpp"
 #include "adaptmesh/core/metric_mesh.hpp"
+#include "adaptmesh/core/outline.hpp"
 #include "adaptmesh/core/smooth.hpp"
 #include "adaptmesh/core/swap.hpp"
 #include "adaptmesh/core/triangulate.hpp"
@@ -62,42 +63,55 @@ EdgeSampler sampler_of(const Points& starts, const Tensors& start_tensors, const
     return sampler;
 }
 
-// Points that cut every edge into unit pieces, the edge of each, and the number of parts per edge.
+// Points that cut every edge into unit pieces, and the edge of each.
 nb::tuple cut_to_unit(const EdgeSampler& sampler) {
     std::vector<FieldPoint> cuts;
     std::vector<double> points;
-    std::vector<Index> edges, parts;
+    std::vector<Index> edges;
     for (Index e = 0; e < sampler.edge_count(); ++e) {
-        parts.push_back(Index(unit_parts(sampler.lengths()[e])));
         cuts.clear();
-        sampler.cut(e, parts.back(), cuts);
+        sampler.cut(e, Index(unit_parts(sampler.lengths()[e])), cuts);
         for (const FieldPoint& p : cuts) points.push_back(p.at.x), points.push_back(p.at.y);
         edges.insert(edges.end(), cuts.size(), e);
     }
-    const std::size_t n = edges.size(), k = parts.size();
-    return nb::make_tuple(to_numpy(std::move(points), {n, 2}), to_numpy(std::move(edges), {n}),
-                          to_numpy(std::move(parts), {k}));
+    const std::size_t n = edges.size();
+    return nb::make_tuple(to_numpy(std::move(points), {n, 2}), to_numpy(std::move(edges), {n}));
 }
 
 class Mesher {
   public:
-    // A constrained Delaunay triangulation of the outline; `held_by` per point: FIXED or the
-    // segment it may slide along.
-    Mesher(const Points& points, const Tensors& tensors, const Indices& held_by,
-           const IndexPairs& segments, const Points& holes, const Points& seeds, bool nesting) {
+    // A constrained Delaunay triangulation of the domain's points, with the metric at each.
+    Mesher(const Points& points, const Tensors& tensors, const IndexPairs& segments,
+           const Points& holes, const Points& seeds, bool nesting) {
         const std::size_t n = points.shape(0);
         expect_rows(tensors.shape(0), n, "tensors");
-        expect_rows(held_by.shape(0), n, "held_by");
         const std::vector<Point> at = points_in(points);
-        const std::vector<Segment> pieces = segments_in(segments);
+        const std::vector<Segment> lines = segments_in(segments);
         const CarveOptions options{points_in(holes), points_in(seeds), nesting};
 
         nb::gil_scoped_release release;
-        ConstrainedTriangulation outline = triangulate(at, pieces, options, poll_);
-        mesh_.topology = std::move(outline.triangulation);
-        constrained_ = std::move(outline.sub_edges);
+        mesh_.topology = triangulate(at, lines, options, poll_).triangulation;
         for (std::size_t i = 0; i < n; ++i)
-            mesh_.vertices.push_back(Vertex::make(at[i], tensor_in(tensors, i), held_by(i)));
+            mesh_.vertices.push_back(Vertex::make(at[i], tensor_in(tensors, i), FIXED));
+    }
+
+    // Cuts the constrained edges with these ends, pieces of these segments; of each cut, `piece`
+    // tells on which it lies; the cuts of a piece are in order from its first end.
+    void cut_outline(const IndexPairs& ends, const Indices& segments, const Points& cuts,
+                     const Tensors& tensors, const Indices& piece) {
+        expect_rows(segments.shape(0), ends.shape(0), "segments");
+        expect_rows(tensors.shape(0), cuts.shape(0), "tensors");
+        expect_rows(piece.shape(0), cuts.shape(0), "piece");
+        nb::gil_scoped_release release;
+        std::vector<Piece> pieces(ends.shape(0));
+        for (std::size_t i = 0; i < pieces.size(); ++i)
+            pieces[i] = {ends(i, 0), ends(i, 1), segments(i), {}};
+        for (std::size_t i = 0; i < cuts.shape(0); ++i) {
+            Piece& p = pieces[piece(i)];
+            p.cuts.push_back(
+                Vertex::make({cuts(i, 0), cuts(i, 1)}, tensor_in(tensors, i), p.segment));
+        }
+        constrained_ = OutlineCutter(mesh_).cut(pieces, poll_);
     }
 
     std::size_t vertex_count() const { return mesh_.vertices.size(); }
@@ -272,10 +286,12 @@ void bind_mesher(nb::module_& m) {
         });
 
     nb::class_<Mesher>(m, "Mesher", "A metric mesh and the stages that improve it, in place.")
-        .def(nb::init<const Points&, const Tensors&, const Indices&, const IndexPairs&,
-                      const Points&, const Points&, bool>(),
-             nb::arg("points"), nb::arg("tensors"), nb::arg("held_by"), nb::arg("segments"),
-             nb::arg("holes"), nb::arg("seeds"), nb::arg("nesting"))
+        .def(nb::init<const Points&, const Tensors&, const IndexPairs&, const Points&,
+                      const Points&, bool>(),
+             nb::arg("points"), nb::arg("tensors"), nb::arg("segments"), nb::arg("holes"),
+             nb::arg("seeds"), nb::arg("nesting"))
+        .def("cut_outline", &Mesher::cut_outline, nb::arg("ends"), nb::arg("segments"),
+             nb::arg("cuts"), nb::arg("tensors"), nb::arg("piece"))
         .def_prop_ro("vertex_count", &Mesher::vertex_count)
         .def("fresh_edges", &Mesher::fresh_edges, nb::arg("uncut_below"))
         .def("insert_along_edges", &Mesher::insert_along_edges, nb::arg("edges"),
@@ -301,6 +317,5 @@ void bind_mesher(nb::module_& m) {
         .def("triangles", &Mesher::triangles)
         .def("labels", &Mesher::labels)
         .def("constrained_edges", &Mesher::constrained_edges);
-    m.attr("FIXED") = FIXED;
     m.attr("MAX_VERTICES") = MAX_TRIANGLES / 2;
 }

@@ -1,0 +1,99 @@
+// Cutting the outline: unit points are put on the constrained edges, coarse to fine.
+//
+// The triangulation is metric Delaunay before and after each point, so that each costs a few flips.
+// (Triangulating all of them at once, for the Euclidean plane, would leave edges between boundaries
+// thousands of units off under a slanted anisotropic metric, each flip bringing them one step
+// nearer.)
+//
+//        a-----------------------b        the middle cut first, then those of both halves, of all
+//        a-----------m-----------b        pieces in turn
+//        a-----m-----m-----m-----b
+#pragma once
+
+#include <vector>
+
+#include "adaptmesh/core/constrain.hpp"
+#include "adaptmesh/core/metric_mesh.hpp"
+#include "adaptmesh/core/swap.hpp"
+
+namespace adaptmesh {
+
+// A constrained edge to be cut, and its cuts in order from a to b.
+struct Piece {
+    Index a, b;
+    Index segment;
+    std::vector<Vertex> cuts;
+};
+
+class OutlineCutter {
+  public:
+    explicit OutlineCutter(MetricMesh& mesh) : mesh_(mesh) {}
+
+    // Returns the constrained edges. A cut that rounding puts on the wrong side of its edge, so
+    // that a triangle there would not be positive, is left out, and what it would have cut stays
+    // whole.
+    template <typename Poll>
+    std::vector<SubEdge> cut(const std::vector<Piece>& pieces, Poll& poll) {
+        std::vector<SubEdge> whole;
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            const Piece& p = pieces[i];
+            spans_.push_back({i, p.a, p.b, 0, Index(p.cuts.size())});
+        }
+        for (std::size_t i = 0; i < spans_.size(); ++i) {  // grows on the way
+            if (i % 1024 == 0) poll();
+            const Span s = spans_[i];
+            const Piece& piece = pieces[s.piece];
+            const Index middle = (s.first + s.last) / 2;
+            const Index v = s.first < s.last ? split(s, piece.cuts[middle]) : NONE;
+            if (v == NONE) {
+                whole.push_back({s.a, s.b, piece.segment});
+            } else {
+                spans_.push_back({s.piece, s.a, v, s.first, middle});
+                spans_.push_back({s.piece, v, s.b, middle + 1, s.last});
+            }
+        }
+        return whole;
+    }
+
+  private:
+    // The part of a piece between two vertices, and the cuts that belong there: first, ..., last
+    // - 1.
+    struct Span {
+        std::size_t piece;
+        Index a, b;
+        Index first, last;
+    };
+
+    Index split(const Span& span, const Vertex& cut) {
+        Place place = mesh_.topology.find_edge(span.a, span.b, scratch_);
+        if (place.triangle == NONE) place = mesh_.topology.find_edge(span.b, span.a, scratch_);
+        if (place.triangle == NONE || !leaves_positive(place, cut.at)) return NONE;
+        const Index across = mesh_.triangle(place.triangle).n[place.slot];
+        if (across != NONE && !leaves_positive({triangle_of(across), slot_of(across)}, cut.at))
+            return NONE;
+
+        const Index v = mesh_.topology.add_vertex();
+        mesh_.vertices.push_back(cut);
+        around_.assign({place.triangle});
+        if (across != NONE) around_.push_back(triangle_of(across));
+        for (Index t : mesh_.topology.split_edge(place, v)) {
+            if (t != NONE) around_.push_back(t);
+        }
+        legalise_around(mesh_, v, around_, DelaunayCriterion{});
+        return v;
+    }
+
+    bool leaves_positive(Place edge, Point p) const {
+        const Triangle& T = mesh_.triangle(edge.triangle);
+        const Point a = mesh_.at(T.v[edge.slot]);
+        const Point b = mesh_.at(T.v[next(edge.slot)]), c = mesh_.at(T.v[prev(edge.slot)]);
+        return orient2d(a, b, p) > 0 && orient2d(a, p, c) > 0;
+    }
+
+    MetricMesh& mesh_;
+    std::vector<Span> spans_;
+    std::vector<Place> scratch_;
+    std::vector<Index> around_;
+};
+
+}  // namespace adaptmesh
