@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import metrics
 from metrics import ControlSpace
-from numpy.typing import NDArray
 
 from . import _core
 from .boundary import Outline, cut_segments, measure_edges
@@ -225,9 +225,9 @@ def triangulate_outline(domain: Domain, outline: Outline) -> _core.Mesher:
     except _core.Fault as fault:
         *_, x, y = fault.args
         raise DomainError(
-            f"unit pieces of the boundary meet near ({x:.17g}, {y:.17g}): the sizes asked for there "
-            "are as small as the spacing of floating-point numbers; ask for larger ones, or move "
-            "the domain nearer to the origin"
+            f"unit pieces of the boundary meet near ({x:.17g}, {y:.17g}): the sizes asked for "
+            "there are as small as the spacing of floating-point numbers; ask for larger ones, or "
+            "move the domain nearer to the origin"
         ) from None
 
 
