@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import metrics
 from metrics import ControlSpace
-from numpy.typing import NDArray
 
 from . import _core
 from .boundary import Cuts, cut_segments, measure_edges

@@ -55,8 +55,8 @@ def can_draw():
 
 
 def run_python(code, folder, *arguments):
-    """Run code as a script in a folder, with the packages that the tests themselves see."""
-    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path), PYTHONUTF8="1")
+    """Run code as a script in a folder."""
+    environment = dict(os.environ, PYTHONUTF8="1")
     return subprocess.run(
         [sys.executable, "-c", code, *arguments],
         cwd=folder,

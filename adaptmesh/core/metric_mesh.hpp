@@ -28,6 +28,11 @@ constexpr Index FIXED = -2;
 constexpr double SHORTEST_UNIT = 0.70710678118654752 * (1 - 1e-9);
 constexpr double LONGEST_UNIT = 1.4142135623730950 * (1 + 1e-9);
 
+// No vertex is put where the triangles it makes would on average have less than this metric area, a
+// third of the unit triangle's. Where the metric turns within an edge, straight edges stay long
+// however many vertices there are; this keeps the mesh from growing without end.
+constexpr double LEAST_AREA = 0.3 * 0.43301270189221932;
+
 // How far an edge is from unit, as a ratio of at least 1.
 inline double ratio_to_unit(double length) {
     return std::max(length, 1 / length);
@@ -107,6 +112,12 @@ class MetricMesh {
         vertices.resize(kept);
         topology.drop_vertices(name, kept);
         return name;
+    }
+
+    double euclidean_area(Index t) const {
+        const Triangle& T = triangle(t);
+        const Point a = at(T.v[0]), b = at(T.v[1]), c = at(T.v[2]);
+        return 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
     }
 
     bool is_positive(Index a, Index b, Index c) const { return orient2d(at(a), at(b), at(c)) > 0; }

@@ -29,7 +29,7 @@ class PointInserter {
             return Outcome::on_constraint;
 
         const Vertex p = Vertex::make(at, metric);
-        if (!keeps_distance(p, place.triangle)) return Outcome::too_near;
+        if (!has_room(p, place.triangle)) return Outcome::too_near;
 
         const Index v = mesh_.add_vertex(p);
         around_.clear();
@@ -46,15 +46,17 @@ class PointInserter {
     }
 
   private:
-    // Looks at the vertices of the triangles whose circle in the metric of p holds p: those that p
-    // would be joined to. Constraints screen what lies behind them.
-    bool keeps_distance(const Vertex& p, Index home) {
+    // Looks at the triangles whose circle in the metric of p holds p: those that p would replace by
+    // triangles to their vertices, two more than they are. Constraints screen what lies behind them.
+    bool has_room(const Vertex& p, Index home) {
         auto& triangles = mesh_.topology.triangles;
         const std::uint32_t stamp = mesh_.topology.new_stamp();
         cavity_.assign(1, home);
         triangles[home].stamp = stamp;
+        double area = 0;
         for (std::size_t i = 0; i < cavity_.size(); ++i) {
             const Triangle& T = triangles[cavity_[i]];
+            area += mesh_.euclidean_area(cavity_[i]);
             for (int slot = 0; slot < 3; ++slot) {
                 if (MetricMesh::length(p, mesh_.vertices[T.v[slot]]) < spacing_) return false;
                 if (is_locked(T.n[slot])) continue;
@@ -66,7 +68,7 @@ class PointInserter {
                     cavity_.push_back(triangle_of(T.n[slot]));
             }
         }
-        return true;
+        return area * p.sqrt_det >= LEAST_AREA * double(cavity_.size() + 2);
     }
 
     MetricMesh& mesh_;

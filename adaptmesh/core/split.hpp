@@ -31,6 +31,9 @@ class Splitter {
             ratio_to_unit(MetricMesh::length(p, a)) >= now_off ||
             ratio_to_unit(MetricMesh::length(p, d)) >= now_off)
             return false;
+        const Index u = triangle_of(mesh_.triangle(edge.triangle).n[edge.slot]);
+        const double area = mesh_.euclidean_area(edge.triangle) + mesh_.euclidean_area(u);
+        if (area * p.sqrt_det < 4 * LEAST_AREA) return false;
         const double then =
             std::min(std::min(MetricMesh::quality(a, b, p), MetricMesh::quality(a, p, c)),
                      std::min(MetricMesh::quality(d, c, p), MetricMesh::quality(d, p, b)));
@@ -40,7 +43,6 @@ class Splitter {
             orient2d(d.at, c.at, p.at) <= 0 || orient2d(d.at, p.at, b.at) <= 0)
             return false;
 
-        const Index u = triangle_of(mesh_.triangle(edge.triangle).n[edge.slot]);
         const Index v = mesh_.add_vertex(p);
         const auto added = mesh_.topology.split_edge(edge, v);
         around_.assign({edge.triangle, u, added[0], added[1]});
