@@ -75,7 +75,11 @@ def _key_figures(report: Report) -> Table:
             f"median; 1 % {quantiles[0.01]:.3f}, 99 % {quantiles[0.99]:.3f}; "
             f"min {r.length_min:.3g}, max {r.length_max:.3g}",
         ),
-        ("efficiency index", f"{r.efficiency_index:.4f}", "1 − mean (1 − min(ℓ, 1/ℓ))²"),
+        (
+            "efficiency index",
+            f"{r.efficiency_index:.4f}",
+            "1 − mean (1 − min(ℓ, 1/ℓ))², Borouchaki et al.",
+        ),
         ("", f"{r.efficiency_index_frey_george:.4f}", "exp mean (min(ℓ, 1/ℓ) − 1), Frey–George"),
         (
             "quality",

@@ -14,9 +14,10 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from .subject import SHOWN, Bools, Finding, Floats, Index, Ints, Subject, finding
+from .subject import Bools, Finding, Floats, Index, Ints, Subject, finding
 
-BLOCK = 2_000_000  # pairs examined at a time
+BLOCK = 1_000_000  # pairs examined at a time
+MOST = 50  # crossings and coverings counted
 
 
 def single_turn(s: Subject) -> Finding:
@@ -82,7 +83,7 @@ def simple_border(s: Subject) -> Finding:
         e, f = pairs[k]
         return f"edges {s.at(*ends[e])} and {s.at(*ends[f])}"
 
-    wrong = "pairs of border edges cross or overlap (the search stopped there)"
+    wrong = "pairs of border edges cross or overlap, and perhaps more"
     return finding(np.arange(len(pairs)), "exact signs", wrong, show)
 
 
@@ -96,27 +97,34 @@ def crossings(s: Subject, ends: Index) -> Ints:
 
     lines = shapely.linestrings(s.points[ends])
     tree = shapely.STRtree(lines)
-    start, size = 0, 64
+    start, size = 0, 4
     while start < len(lines):
         e, f = tree.query(lines[start : start + size])
+        found = len(e) + 1
         e += start
         e, f = e[e < f], f[e < f]
-        met = np.flatnonzero(meet(s, *ends[e].T, *ends[f].T))
+        met = meet(s, ends[e], ends[f])
         if len(met):
-            return np.stack([e[met], f[met]], axis=1)[: 10 * SHOWN]
-        start, size = start + size, int(np.clip(BLOCK * size // (len(e) + 1), 64, 2**16))
+            return np.stack([e[met], f[met]], axis=1)[:MOST]
+        start, size = start + size, int(np.clip(BLOCK * size // found, 1, 2**16))
     return np.empty((0, 2), np.int64)
 
 
-def meet(s: Subject, a: Index, b: Index, c: Index, d: Index) -> Bools:
-    """Whether edges ab and cd have more in common than an end."""
-    abc, abd, cda, cdb = s.orient(a, b, c), s.orient(a, b, d), s.orient(c, d, a), s.orient(c, d, b)
-    out: Bools = (abc * abd < 0) & (cda * cdb < 0)
-    for side, p, q, r in ((abc, a, b, c), (abd, a, b, d), (cda, c, d, a), (cdb, c, d, b)):
+def meet(s: Subject, e: Index, f: Index) -> Ints:
+    """Which of the pairs of edges e (k, 2) and f (k, 2) have more in common than an end."""
+    kept = np.arange(len(e))
+    for one, other in ((e, f), (f, e)):  # keep pairs of which neither lies beside the other
+        a, b = one[kept].T
+        c, d = other[kept].T
+        kept = kept[s.orient(a, b, c) * s.orient(a, b, d) <= 0]
+    (a, b), (c, d) = e[kept].T, f[kept].T
+    sides = [s.orient(a, b, c), s.orient(a, b, d), s.orient(c, d, a), s.orient(c, d, b)]
+    out: Bools = np.all(np.not_equal(sides, 0), axis=0)  # they cross
+    for side, p, q, r in zip(sides, (a, a, c, c), (b, b, d, d), (c, d, a, b), strict=True):
         x, y, z = s.points[p], s.points[q], s.points[r]
         between = ((np.minimum(x, y) <= z) & (z <= np.maximum(x, y))).all(axis=1)
         out |= (side == 0) & between & (r != p) & (r != q)  # r hangs on the edge pq
-    return out
+    return kept[out]
 
 
 def covered_once(s: Subject) -> Finding:
@@ -134,32 +142,43 @@ def covered_once(s: Subject) -> Finding:
     with np.errstate(over="ignore", invalid="ignore"):
         area = float(s.mesh.areas.sum())
     good = f"area {area:.12g}; pieces of border: {len(sample)}"
-    wrong = "pieces of border lie in foreign triangles"
+    wrong = "points of the border lie in foreign triangles, and perhaps more"
     return finding(np.arange(len(pairs)), good, wrong, show)
 
 
 def points_in_triangles(s: Subject, sample: Index) -> Ints:
-    """The pairs (point, triangle) where the triangle contains the point but does not own it."""
-    sample = sample[np.argsort(s.points[sample, 0])]
-    low, high = s.points[s.mesh.triangles].min(axis=1), s.points[s.mesh.triangles].max(axis=1)
-    x = s.points[sample, 0]
-    first = np.searchsorted(x, low[:, 0])
-    many = np.searchsorted(x, high[:, 0], side="right") - first
+    """The first pairs (point, triangle) where the triangle contains the point but does not own it.
+
+    Points are sorted along x or y, whichever pairs fewer of them with triangles of the same range.
+    The search goes on in blocks until one of them holds a pair.
+    """
+    corners = s.points[s.mesh.triangles]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    ranges = [_ranges(s.points[sample], low, high, axis) for axis in (0, 1)]
+    order, first, many = min(ranges, key=lambda r: float(r[2].sum()))
     triangles = np.flatnonzero(many)
-    found = [np.empty((0, 2), np.int64)]
     for block in np.split(triangles, _cuts(many[triangles])):
         t = np.repeat(block, many[block])
         k = np.arange(len(t)) - np.repeat(np.cumsum(many[block]) - many[block], many[block])
-        p = sample[first[t] + k]
-        y = s.points[p, 1]
-        near = (
-            (low[t, 1] <= y) & (y <= high[t, 1]) & (s.mesh.triangles[t] != p[:, None]).all(axis=1)
-        )
+        p = sample[order[first[t] + k]]
+        xy = s.points[p]
+        near = ((low[t] <= xy) & (xy <= high[t])).all(axis=1)
+        near &= (s.mesh.triangles[t] != p[:, None]).all(axis=1)
         t, p = t[near], p[near]
         a, b, c = s.mesh.triangles[t].T
         inside = (s.orient(a, b, p) >= 0) & (s.orient(b, c, p) >= 0) & (s.orient(c, a, p) >= 0)
-        found.append(np.stack([p[inside], t[inside]], axis=1))
-    return np.concatenate(found)
+        if inside.any():
+            return np.stack([p[inside], t[inside]], axis=1)[:MOST]
+    return np.empty((0, 2), np.int64)
+
+
+def _ranges(points: Floats, low: Floats, high: Floats, axis: int) -> tuple[Ints, Ints, Ints]:
+    """Points in order along an axis, and for each box the first in its range and how many."""
+    order = np.argsort(points[:, axis])
+    along = points[order, axis]
+    first = np.searchsorted(along, low[:, axis])
+    many = np.searchsorted(along, high[:, axis], side="right") - first
+    return order, first, many
 
 
 def _cuts(counts: Index) -> Ints:
