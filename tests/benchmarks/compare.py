@@ -35,7 +35,8 @@ SCALED = ("radial", "ring")  # up to a million, adaptmesh alone
 PHASED = ("radial", "aerofoil", "ring", "plate")
 QUICK_CASES = ("radial", "wall", "ring", "plate")
 LARGEST_COMPARED = 100_000
-LARGEST_FOR_GMSH_TENSORS = 10_000  # seconds for each thousand triangles
+ONLY_SIZES = ("Triangle",)
+LARGEST_FOR_TENSORS = {"Gmsh": 10_000}  # it takes a second for ten thousand triangles
 TIME_LIMIT = 300.0  # seconds for one request
 
 
@@ -112,7 +113,8 @@ def say(row):
         print(f"{head} {row['failed']}", flush=True)
         return
     print(
-        f"{head}{row['triangles']:8} triangles  cpu {row['cpu']:7.3f}  total {row['total_cpu']:7.3f}"
+        f"{head}{row['triangles']:8} triangles"
+        f"  cpu {row['cpu']:7.3f}  total {row['total_cpu']:7.3f}"
         f"  unit {100 * row['unit']:6.2f} %  Q {row['quality_min']:.3f} {row['quality_mean']:.3f}"
         f"  {', '.join(row['broken']) or 'valid'}",
         flush=True,

@@ -1,4 +1,4 @@
-"""How good a mesh is, and whether it is one: the same report for everybody's, by the exact metric."""
+"""How good is a mesh, and is it one? The same report for everybody's, by the exact metric."""
 
 from __future__ import annotations
 

@@ -71,10 +71,11 @@ def markdown(head, rows):
 
 
 def per_level(table, make):
-    parts = []
-    for level in LEVELS:
-        if table.cases(level):
-            parts.append(f"\n{level:,} triangles asked for:\n\n{make(table, level)}\n")
+    parts = [
+        f"\n{level:,} triangles asked for:\n\n{make(table, level)}\n"
+        for level in LEVELS
+        if table.cases(level)
+    ]
     return "\n".join(parts)
 
 

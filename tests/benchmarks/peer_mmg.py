@@ -1,7 +1,8 @@
 """MMG2D through its bindings (PyPI: mmgpy).
 
 No gradation, no sizes from required vertices, no detection of corners by angle (every point of the
-domain is a corner), straight boundaries (`hausd` far above the domain).
+domain is a corner), straight boundaries (`hausd` far above the domain). An `hmax` far above the
+domain as well would cost it half of the triangles of thin layers.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class Mmg(Remesher):
                     angle=0,
                     hausd=1e6 * diameter,
                     hmin=1e-9 * diameter,
-                    hmax=1e3 * diameter,
+                    hmax=2 * diameter,
                     verbose=-1,
                 )
             points = np.array(mesh.get_vertices())
