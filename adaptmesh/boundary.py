@@ -45,12 +45,16 @@ class Cuts:
     piece: Ints
 
 
-def measure_edges(sampler: _core.EdgeSampler, field: ControlSpace) -> Floats:
-    """Metric lengths of the edges in a sampler, asking the field where it wants to know."""
+def measure_edges(sampler: _core.EdgeSampler, field: ControlSpace, most: float = np.inf) -> float:
+    """Measure the edges in a sampler, asking the field where it wants to know.
+
+    Returns the sum of their metric lengths; stops as soon as it is known to exceed `most`.
+    """
     while len(wanted := sampler.wanted()):
         sampler.feed(field(wanted))
-    lengths: Floats = sampler.lengths()
-    return lengths
+        if sampler.estimate() > most:
+            break
+    return sampler.estimate()
 
 
 def cut_segments(domain: Domain, field: ControlSpace, most_points: int) -> Cuts:
@@ -67,10 +71,10 @@ def cut_segments(domain: Domain, field: ControlSpace, most_points: int) -> Cuts:
     sampler = _core.edge_sampler(
         domain.points[starts], tensors[starts], domain.points[stops], tensors[stops], LONGEST_CHORD
     )
-    total = measure_edges(sampler, field).sum()
+    total = measure_edges(sampler, field, 2.0 * most_points)
     if len(domain.points) + total > most_points:
         raise BudgetError(
-            f"the boundary alone would have about {total:.3g} vertices, but max_vertices is "
+            f"the boundary alone would have {total:.3g} vertices or more, but max_vertices is "
             f"{most_points:,}: ask for larger sizes, or allow more"
         )
     points, piece = sampler.cut()

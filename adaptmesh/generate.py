@@ -214,7 +214,7 @@ class Budget:
 
 
 def triangulate_outline(domain: Domain, cuts: Cuts) -> _core.Mesher:
-    """The constrained triangulation of the domain's points, metric Delaunay, then of the cuts too."""
+    """The constrained triangulation of the domain's points, then of the cuts: metric Delaunay."""
     mesher = _core.Mesher(
         domain.points, cuts.tensors, domain.segments, domain.holes, domain.seeds, domain.nesting
     )

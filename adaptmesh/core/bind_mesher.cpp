@@ -55,7 +55,7 @@ EdgeSampler sampler_of(const Points& starts, const Tensors& start_tensors, const
     expect_rows(start_tensors.shape(0), n, "start tensors");
     expect_rows(ends.shape(0), n, "ends");
     expect_rows(end_tensors.shape(0), n, "end tensors");
-    EdgeSampler sampler(longest_chord, 0.0);
+    EdgeSampler sampler(longest_chord, INFINITY, 0.0);
     for (std::size_t i = 0; i < n; ++i) {
         sampler.add({starts(i, 0), starts(i, 1)}, tensor_in(start_tensors, i),
                     {ends(i, 0), ends(i, 1)}, tensor_in(end_tensors, i));
@@ -260,6 +260,7 @@ void bind_mesher(nb::module_& m) {
                             "Measures edges by asking for the metric, and cuts them.")
         .def("wanted", &wanted, "Points (n, 2) where the metric is wanted next; none: done.")
         .def("feed", &feed, nb::arg("tensors"), "The metric (n, 3) at the wanted points.")
+        .def("estimate", &EdgeSampler::estimate)
         .def("lengths",
              [](const EdgeSampler& s) {
                  auto lengths = s.lengths();

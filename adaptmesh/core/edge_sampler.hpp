@@ -45,9 +45,11 @@ class EdgeSampler {
     static constexpr int DEEPEST = 40;
 
     // ... and it is no longer than `longest_chord`: finer detail can pass unseen between samples.
-    // Edges shorter than `uncut_below` will not be cut: only their lengths are kept.
-    EdgeSampler(double longest_chord, double uncut_below)
-        : longest_chord_(longest_chord), uncut_below_(uncut_below) {}
+    // Edges shorter than `uncut_below` will not be cut: only their lengths are kept. Of edges
+    // longer than `longest_edge` nobody wants to know how long they are: they are not looked at
+    // closer.
+    EdgeSampler(double longest_chord, double longest_edge, double uncut_below)
+        : longest_chord_(longest_chord), longest_edge_(longest_edge), uncut_below_(uncut_below) {}
 
     void add(Point a, const Tensor& metric_a, Point b, const Tensor& metric_b) {
         const Index edge = Index(edges_.size());
@@ -73,28 +75,33 @@ class EdgeSampler {
     // The metrics at the wanted points, in their order.
     template <typename TensorAt>
     void feed(TensorAt&& tensor_at) {
-        std::vector<Chord> unsure;
+        std::vector<Halved> halved(chords_.size());
+        estimates_ = lengths_;
         for (std::size_t i = 0; i < chords_.size(); ++i) {
-            const Chord& c = chords_[i];
-            const Tensor middle = tensor_at(i);
-            const double t = 0.5 * (c.t0 + c.t1);
-            const Chord left{c.edge, c.depth + 1, c.t0, t, c.m0, middle};
-            const Chord right{c.edge, c.depth + 1, t, c.t1, middle, c.m1};
-            const double whole = length(c), halves = length(left) + length(right);
-            const bool agree = std::abs(whole - halves) <= AGREEMENT * halves;
-            if ((agree && halves <= longest_chord_) || halves <= SHORTEST_CHORD ||
-                c.depth >= DEEPEST) {
-                lengths_[c.edge] += halves;
-                if (c.depth == 0 && halves < uncut_below_) continue;
-                pieces_.push_back(left);
-                pieces_.push_back(right);
-            } else {
-                unsure.push_back(left);
-                unsure.push_back(right);
-            }
+            halved[i] = halve(chords_[i], tensor_at(i));
+            estimates_[chords_[i].edge] += halved[i].length;
         }
-        chords_.swap(unsure);
+        chords_.clear();
+        for (const Halved& h : halved) {
+            const bool measured_enough = h.is_trusted || estimates_[h.left.edge] > longest_edge_;
+            if (!measured_enough) {
+                chords_.push_back(h.left);
+                chords_.push_back(h.right);
+                continue;
+            }
+            lengths_[h.left.edge] += h.length;
+            if (h.left.depth == 1 && h.length < uncut_below_) continue;
+            pieces_.push_back(h.left);
+            pieces_.push_back(h.right);
+        }
         if (chords_.empty()) finish();
+    }
+
+    // Sum of all lengths, as far as they are known.
+    double estimate() const {
+        double total = 0;
+        for (double length : estimates_) total += length;
+        return total;
     }
 
     // Metric length of each edge, once all are measured.
@@ -127,6 +134,23 @@ class EdgeSampler {
         Tensor m0, m1;
     };
 
+    struct Halved {
+        Chord left, right;
+        double length;
+        bool is_trusted;
+    };
+
+    Halved halve(const Chord& c, const Tensor& middle) const {
+        const double t = 0.5 * (c.t0 + c.t1);
+        const Chord left{c.edge, c.depth + 1, c.t0, t, c.m0, middle};
+        const Chord right{c.edge, c.depth + 1, t, c.t1, middle, c.m1};
+        const double halves = length(left) + length(right);
+        const bool agree = std::abs(length(c) - halves) <= AGREEMENT * halves;
+        return {
+            left, right, halves,
+            (agree && halves <= longest_chord_) || halves <= SHORTEST_CHORD || c.depth >= DEEPEST};
+    }
+
     Point point(Index edge, double t) const {
         const Edge& e = edges_[edge];
         return {e.from.x + t * e.vector.x, e.from.y + t * e.vector.y};
@@ -158,12 +182,14 @@ class EdgeSampler {
     }
 
     double longest_chord_;
+    double longest_edge_;
     double uncut_below_;
     std::vector<Edge> edges_;
-    std::vector<Chord> chords_;  // asked about
-    std::vector<Chord> pieces_;  // trusted
-    std::vector<Index> first_;   // of each edge, in pieces_
-    std::vector<double> lengths_;
+    std::vector<Chord> chords_;      // asked about
+    std::vector<Chord> pieces_;      // trusted
+    std::vector<Index> first_;       // of each edge, in pieces_
+    std::vector<double> lengths_;    // of what is trusted
+    std::vector<double> estimates_;  // of all, from the last round
 };
 
 }  // namespace adaptmesh

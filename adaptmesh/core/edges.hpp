@@ -19,6 +19,9 @@ constexpr double WORTH_CORRECTING = 0.01;
 // Of interior edges: there are many, crossing each other, and new ones in each sweep.
 constexpr double LONGEST_CHORD = 4.0;
 
+// Longer ones are cut into about so many parts, and what is left of them in the next sweep.
+constexpr double LONGEST_EDGE = 64.0;
+
 // Edges handed out for measuring.
 struct EdgesToMeasure {
     EdgeSampler sampler;
@@ -33,10 +36,11 @@ struct EdgesToMeasure {
     }
 };
 
-// The interior edges that appeared since the last call; those shorter than `uncut_below` will only
-// be measured.
-inline EdgesToMeasure take_fresh_edges(MetricMesh& mesh, double uncut_below) {
-    EdgesToMeasure out{EdgeSampler(LONGEST_CHORD, uncut_below), {}, {}};
+// The interior edges that appeared since the last call. With `to_cut`, they can be cut from that
+// length on; without, only be measured, those far from unit roughly.
+inline EdgesToMeasure take_fresh_edges(MetricMesh& mesh, double to_cut) {
+    const double longest = to_cut < INFINITY ? LONGEST_EDGE : LONGEST_CHORD;
+    EdgesToMeasure out{EdgeSampler(LONGEST_CHORD, longest, to_cut), {}, {}};
     auto& triangles = mesh.topology.triangles;
     for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
         if (!(triangles[t].fresh & TO_MEASURE) || mesh.topology.is_dead(t)) continue;
@@ -98,10 +102,9 @@ Index insert_along_edges(MetricMesh& mesh, const EdgesToMeasure& edges, double l
         if (length < long_edge) continue;
         const Place place = mesh.topology.find_edge(edges.a[e], edges.b[e], scratch);
         if (place.triangle == NONE) continue;
-        const double room = double(most_vertices) - double(mesh.vertices.size());
-        if (unit_parts(length) > room) return NONE;
+        if (Index(mesh.vertices.size()) >= most_vertices) return NONE;
         points.clear();
-        edges.sampler.cut(e, Index(unit_parts(length)), points);
+        edges.sampler.cut(e, Index(unit_parts(std::min(length, LONGEST_EDGE))), points);
         Index near = place.triangle;
         for (const FieldPoint& p : points)
             inserted += inserter.insert(p.at, p.metric, near) == PointInserter::Outcome::inserted;

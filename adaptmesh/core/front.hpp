@@ -5,10 +5,9 @@
 // right and looks to its left:
 //
 //          c                P
-//         / \              / \         if the triangle (a, b, c) ahead has sides short enough, it
-//         is
-//        /   \    or      /   \        accepted and (c, b), (a, c) join the front; else the point P
-//       a --- b          a --- b       that makes a unit triangle is wanted
+//         / \              / \         if the triangle (a, b, c) ahead has short sides, it is
+//        /   \    or      /   \        accepted, and (c, b), (a, c) join the front; else the
+//       a --- b          a --- b       point P that makes a unit triangle is wanted
 //
 // Like the sampler, the front asks in rounds: the place of P depends on the metric at P, so that it
 // is evaluated, for a whole layer at once, and the place found anew.

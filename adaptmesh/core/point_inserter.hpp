@@ -47,7 +47,8 @@ class PointInserter {
 
   private:
     // Looks at the triangles whose circle in the metric of p holds p: those that p would replace by
-    // triangles to their vertices, two more than they are. Constraints screen what lies behind them.
+    // triangles to their vertices, two more than they are. Constraints screen what lies behind
+    // them.
     bool has_room(const Vertex& p, Index home) {
         auto& triangles = mesh_.topology.triangles;
         const std::uint32_t stamp = mesh_.topology.new_stamp();
