@@ -45,16 +45,20 @@ class Cuts:
     piece: Ints
 
 
-def measure_edges(sampler: _core.EdgeSampler, field: ControlSpace, most: float = np.inf) -> float:
-    """Measure the edges in a sampler, asking the field where it wants to know.
-
-    Returns the sum of their metric lengths; stops as soon as it is known to exceed `most`.
-    """
+def measure_edges(
+    sampler: _core.EdgeSampler, field: ControlSpace, most_points: float = np.inf
+) -> Floats:
+    """Metric lengths of the edges in a sampler, asking the field where it wants to know."""
     while len(wanted := sampler.wanted()):
+        if len(wanted) > most_points:
+            x, y = wanted[len(wanted) // 2]
+            raise BudgetError(
+                f"the boundary alone needs more than {most_points:,} vertices, many of them near "
+                f"({x:g}, {y:g}): ask for larger sizes, or allow more"
+            )
         sampler.feed(field(wanted))
-        if sampler.estimate() > most:
-            break
-    return sampler.estimate()
+    lengths: Floats = sampler.lengths()
+    return lengths
 
 
 def cut_segments(domain: Domain, field: ControlSpace, most_points: int) -> Cuts:
@@ -71,10 +75,10 @@ def cut_segments(domain: Domain, field: ControlSpace, most_points: int) -> Cuts:
     sampler = _core.edge_sampler(
         domain.points[starts], tensors[starts], domain.points[stops], tensors[stops], LONGEST_CHORD
     )
-    total = measure_edges(sampler, field, 2.0 * most_points)
+    total = measure_edges(sampler, field, most_points).sum()
     if len(domain.points) + total > most_points:
         raise BudgetError(
-            f"the boundary alone would have {total:.3g} vertices or more, but max_vertices is "
+            f"the boundary alone would have about {total:.3g} vertices, but max_vertices is "
             f"{most_points:,}: ask for larger sizes, or allow more"
         )
     points, piece = sampler.cut()

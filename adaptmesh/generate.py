@@ -156,7 +156,7 @@ def generate(
     place_along_edges(mesher, field, EdgePlacement(), budget, report)
     if insert_what_was_missed(mesher, samples):
         place_along_edges(mesher, field, EdgePlacement(), budget, report)
-    optimise(mesher, field, Optimisation(), report)
+    optimise(mesher, field, Optimisation(), budget, report)
     report("done", 1.0)
     return finished_mesh(domain, mesher)
 
@@ -312,7 +312,11 @@ def measure_fresh_edges(
 
 
 def optimise(
-    mesher: _core.Mesher, field: ControlSpace, options: Optimisation, report: Progress
+    mesher: _core.Mesher,
+    field: ControlSpace,
+    options: Optimisation,
+    budget: Budget,
+    report: Progress,
 ) -> None:
     """Smooth and swap everywhere, then work on what is not yet unit."""
     bands = [options.wide] * options.wide_rounds + [options.narrow] * options.narrow_rounds
@@ -327,6 +331,7 @@ def optimise(
         report("improving", 0.7 + 0.3 * (options.smoothings + k) / steps)
         measure_fresh_edges(mesher, field, uncut_below=np.inf)
         changes = mesher.collapse_short_edges() + mesher.split_long_edges()
+        budget.check(mesher.vertex_count)
         refresh(mesher, field)
         mesher.swap()
         changes += mesher.search_active(*band, options.step)

@@ -24,7 +24,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.integer]
 Point = tuple[float, float]
 
-SHORTEST, LONGEST = 2**-0.5, 2**0.5  # of a unit edge
+# A unit edge is as long as these, both included whatever the rounding: a grid of squares of side
+# one is a unit mesh.
+SHORTEST, LONGEST = 2**-0.5 * (1 - 1e-9), 2**0.5 * (1 + 1e-9)
 LENGTH_RULE = "Gauss quadrature of the metric along the edge"
 QUANTILES = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 WORST = 5  # edges and triangles named

@@ -260,7 +260,6 @@ void bind_mesher(nb::module_& m) {
                             "Measures edges by asking for the metric, and cuts them.")
         .def("wanted", &wanted, "Points (n, 2) where the metric is wanted next; none: done.")
         .def("feed", &feed, nb::arg("tensors"), "The metric (n, 3) at the wanted points.")
-        .def("estimate", &EdgeSampler::estimate)
         .def("lengths",
              [](const EdgeSampler& s) {
                  auto lengths = s.lengths();

@@ -42,7 +42,10 @@ class EdgeSampler {
     static constexpr double AGREEMENT = 0.05;
     // Shorter ones are trusted as they are: they cannot change the count of points.
     static constexpr double SHORTEST_CHORD = 0.05;
-    static constexpr int DEEPEST = 40;
+    // From a thousandth of the edge on, chords may be longer than asked for.
+    static constexpr int FINE_DEPTH = 10;
+    static constexpr double LONGEST_FINE_CHORD = 4.0;
+    static constexpr int DEEPEST = 1000;  // the end of halving doubles
 
     // ... and it is no longer than `longest_chord`: finer detail can pass unseen between samples.
     // Edges shorter than `uncut_below` will not be cut: only their lengths are kept. Of edges
@@ -76,14 +79,14 @@ class EdgeSampler {
     template <typename TensorAt>
     void feed(TensorAt&& tensor_at) {
         std::vector<Halved> halved(chords_.size());
-        estimates_ = lengths_;
+        std::vector<double> estimates = lengths_;
         for (std::size_t i = 0; i < chords_.size(); ++i) {
             halved[i] = halve(chords_[i], tensor_at(i));
-            estimates_[chords_[i].edge] += halved[i].length;
+            estimates[chords_[i].edge] += halved[i].length;
         }
         chords_.clear();
         for (const Halved& h : halved) {
-            const bool measured_enough = h.is_trusted || estimates_[h.left.edge] > longest_edge_;
+            const bool measured_enough = h.is_trusted || estimates[h.left.edge] > longest_edge_;
             if (!measured_enough) {
                 chords_.push_back(h.left);
                 chords_.push_back(h.right);
@@ -95,13 +98,6 @@ class EdgeSampler {
             pieces_.push_back(h.right);
         }
         if (chords_.empty()) finish();
-    }
-
-    // Sum of all lengths, as far as they are known.
-    double estimate() const {
-        double total = 0;
-        for (double length : estimates_) total += length;
-        return total;
     }
 
     // Metric length of each edge, once all are measured.
@@ -146,9 +142,10 @@ class EdgeSampler {
         const Chord right{c.edge, c.depth + 1, t, c.t1, middle, c.m1};
         const double halves = length(left) + length(right);
         const bool agree = std::abs(length(c) - halves) <= AGREEMENT * halves;
+        const double longest = c.depth < FINE_DEPTH ? longest_chord_ : LONGEST_FINE_CHORD;
         return {
             left, right, halves,
-            (agree && halves <= longest_chord_) || halves <= SHORTEST_CHORD || c.depth >= DEEPEST};
+            (agree && halves <= longest) || halves <= SHORTEST_CHORD || c.depth >= DEEPEST};
     }
 
     Point point(Index edge, double t) const {
@@ -188,8 +185,7 @@ class EdgeSampler {
     std::vector<Chord> chords_;      // asked about
     std::vector<Chord> pieces_;      // trusted
     std::vector<Index> first_;       // of each edge, in pieces_
-    std::vector<double> lengths_;    // of what is trusted
-    std::vector<double> estimates_;  // of all, from the last round
+    std::vector<double> lengths_;  // of what is trusted
 };
 
 }  // namespace adaptmesh

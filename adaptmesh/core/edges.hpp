@@ -20,7 +20,7 @@ constexpr double WORTH_CORRECTING = 0.01;
 constexpr double LONGEST_CHORD = 4.0;
 
 // Longer ones are cut into about so many parts, and what is left of them in the next sweep.
-constexpr double LONGEST_EDGE = 64.0;
+constexpr double LONGEST_EDGE = 16;
 
 // Edges handed out for measuring.
 struct EdgesToMeasure {

@@ -71,18 +71,23 @@ class DomainSubject(Subject):
         lines = shapely.linestrings(self.points[self.mesh.edges])
         edge, segment = tree.query(lines, predicate="dwithin", distance=self.tolerance)
         start, end = self.mesh.edges[edge].T
-        on = self._on(segment, start) & self._on(segment, end)
-        edge, segment, start, end = edge[on], segment[on], start[on], end[on]
+        off = np.maximum(self._distance(segment, start), self._distance(segment, end))
+        # An edge belongs to one segment: where two are within the tolerance (tiny edges at a corner,
+        # boundaries that nearly touch) to the nearest.
+        nearest = np.lexsort((off, edge))
+        first = np.diff(edge[nearest], prepend=-1) > 0
+        mine = nearest[first & (off[nearest] <= self.tolerance)]
+        edge, segment, start, end = edge[mine], segment[mine], start[mine], end[mine]
         at_start, at_end = self._along(segment, start), self._along(segment, end)
         order = np.lexsort((at_start + at_end, segment))
         return segment[order], edge[order], (at_start > at_end)[order]
 
-    def _on(self, segment: Index, vertex: Index) -> Bools:
-        """Whether points of the mesh are on segments of the domain."""
+    def _distance(self, segment: Index, vertex: Index) -> Floats:
+        """Distances of points of the mesh from segments of the domain."""
         a, b = (self.corners[i] for i in self.domain.segments[segment].T)
         d, w = b - a, self.points[vertex] - a
         t = np.clip((w * d).sum(axis=1) / (d * d).sum(axis=1), 0, 1)
-        out: Bools = np.hypot(*(w - t[:, None] * d).T) <= self.tolerance
+        out: Floats = np.hypot(*(w - t[:, None] * d).T)
         return out
 
     def _along(self, segment: Index, vertex: Index) -> Floats:
