@@ -11,6 +11,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -60,13 +62,20 @@ class BoxTree {
     // Calls visit(item) for each item whose box contains the point, until it returns true.
     template <typename Visit>
     void containing(double x, double y, Visit visit) const {
+        matching([x, y](const Box& box) { return box.contains(x, y); }, visit);
+    }
+
+    // Calls visit(item) for each item whose box passes a test, until it returns true. A box
+    // around one that passes must pass too.
+    template <typename Test, typename Visit>
+    void matching(Test test, Visit visit) const {
         if (items_.empty()) return;
         Node stack[MAX_DEPTH];
         int depth = 0;
         stack[depth++] = {int(levels_.size()) - 1, 0, 0};
         while (depth > 0) {
             const Node node = stack[--depth];
-            if (!levels_[node.level][node.index].contains(x, y)) continue;
+            if (!test(levels_[node.level][node.index])) continue;
             if (node.level == 0) {
                 if (visit(items_[node.index])) return;
                 continue;
@@ -81,31 +90,40 @@ class BoxTree {
     // -1 in an empty tree. Of equals, the first met.
     template <typename SquaredDistance>
     std::int32_t nearest(double x, double y, SquaredDistance squared_distance) const {
-        if (items_.empty()) return -1;
-        std::int32_t best = -1;
-        double best_distance = std::numeric_limits<double>::infinity();
-        Node stack[MAX_DEPTH];
-        int depth = 0;
-        stack[depth++] = {int(levels_.size()) - 1, 0, 0};
-        while (depth > 0) {
-            const Node node = stack[--depth];
-            if (best >= 0 && node.distance >= best_distance) continue;
-            if (node.level == 0) {
-                const double distance = squared_distance(items_[node.index]);
-                if (best < 0 || distance < best_distance) {
-                    best = items_[node.index], best_distance = distance;
+        const auto bound = [&](int level, std::size_t k) {
+            return levels_[level][k].squared_distance(x, y);
+        };
+        return least(bound, squared_distance);
+    }
+
+    // The item of smallest cost(item), which must not be less than its value + growth * distance to
+    // its box, for the values that `minima` was made from; -1 in an empty tree.
+    template <typename Cost>
+    std::int32_t nearest_weighted(double x, double y, double growth,
+                                  const std::vector<std::vector<double>>& minima, Cost cost) const {
+        const auto bound = [&](int level, std::size_t k) {
+            const double distance = std::sqrt(levels_[level][k].squared_distance(x, y));
+            return minima[level][k] + growth * distance;
+        };
+        return least(bound, cost);
+    }
+
+    // For every box of every level, the smallest of the values of the items in it.
+    std::vector<std::vector<double>> minima(const std::vector<double>& of_items) const {
+        std::vector<std::vector<double>> out;
+        for (const std::vector<Box>& level : levels_) {
+            std::vector<double> least(level.size(), std::numeric_limits<double>::infinity());
+            if (out.empty()) {
+                for (std::size_t k = 0; k < least.size(); ++k) least[k] = of_items[items_[k]];
+            } else {
+                const std::vector<double>& below = out.back();
+                for (std::size_t k = 0; k < below.size(); ++k) {
+                    least[k / FANOUT] = std::min(least[k / FANOUT], below[k]);
                 }
-                continue;
             }
-            const int bottom = depth;
-            for (std::size_t k = first_child(node); k < end_child(node); ++k) {
-                const double d = levels_[node.level - 1][k].squared_distance(x, y);
-                stack[depth++] = {node.level - 1, k, d};
-            }
-            std::sort(stack + bottom, stack + depth,  // the nearest on top
-                      [](const Node& p, const Node& q) { return p.distance > q.distance; });
+            out.push_back(std::move(least));
         }
-        return best;
+        return out;
     }
 
   private:
@@ -115,8 +133,40 @@ class BoxTree {
     struct Node {
         int level;
         std::size_t index;
-        double distance;
+        double bound;
     };
+
+    // The item of smallest cost(item), depth first and the most promising box first, leaving out
+    // the boxes whose bound(level, index), which no cost in them is below, is too large already.
+    template <typename Bound, typename Cost>
+    std::int32_t least(Bound bound, Cost cost) const {
+        if (items_.empty()) return -1;
+        std::int32_t best = -1;
+        double best_cost = std::numeric_limits<double>::infinity();
+        Node stack[MAX_DEPTH];
+        int depth = 0;
+        stack[depth++] = {int(levels_.size()) - 1, 0, 0};
+        while (depth > 0) {
+            const Node node = stack[--depth];
+            if (best >= 0 && node.bound >= best_cost) continue;
+            if (node.level == 0) {
+                const double found = cost(items_[node.index]);
+                if (best < 0 || found < best_cost) best = items_[node.index], best_cost = found;
+                continue;
+            }
+            const int bottom = depth;
+            for (std::size_t k = first_child(node); k < end_child(node); ++k) {
+                const Node child{node.level - 1, k, bound(node.level - 1, k)};
+                if (best >= 0 && child.bound >= best_cost) continue;
+                int place = depth++;  // the most promising on top
+                for (; place > bottom && stack[place - 1].bound < child.bound; --place) {
+                    stack[place] = stack[place - 1];
+                }
+                stack[place] = child;
+            }
+        }
+        return best;
+    }
 
     std::size_t first_child(const Node& node) const { return FANOUT * node.index; }
     std::size_t end_child(const Node& node) const {
