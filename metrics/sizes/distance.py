@@ -71,7 +71,7 @@ class Distance(ControlSpace):
         self.inside = chosen("inside", inside, ("zero", "boundary"))
 
     def values(self, points: Floats) -> ArrayLike:
-        distances = self.geometry.nearest(points).distances
+        distances = self.geometry.distances(points)
         if self.geometry.is_polygonal and self.inside == "zero":
             distances[self.geometry.contains(points)] = 0
         return grown(self.h_min, self.slope, distances, self.h_max)

@@ -98,7 +98,9 @@ class Geometry:
         self.segments = np.ascontiguousarray(np.concatenate(pieces))
         self.segments.flags.writeable = False
         self._search = _core.Segments(self.segments.reshape(-1, 4))
-        self.scale = float(np.abs(self.segments).max())
+        self._rounding = _ROUNDING * float(np.abs(self.segments).max())
+        self._tangents = _tangents(self.segments)
+        self._end_tangents = _end_tangents(self._tangents, self.vertices()[1])
 
     def __getstate__(self) -> dict[str, Any]:
         return {"segments": self.segments, "is_polygonal": self.is_polygonal}
@@ -115,6 +117,12 @@ class Geometry:
         distances = np.hypot(offsets[:, 0], offsets[:, 1])
         directions = self._directions(offsets, distances, segments, shares)
         return Nearest(distances, feet, segments, shares, directions)
+
+    def distances(self, points: ArrayLike) -> Floats:
+        """Distances of points (n, 2), (n,), not negative."""
+        where = as_points(points)
+        offsets = where - self._search.nearest(where)[2]
+        return np.hypot(offsets[:, 0], offsets[:, 1])
 
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether points (n, 2) are inside, (n,); what is in an even number of rings is outside.
@@ -134,7 +142,7 @@ class Geometry:
     def signed_distance(self, points: ArrayLike) -> Floats:
         """Distances of points (n, 2) to the boundary of polygons, (n,), negative inside."""
         where = as_points(points)
-        distances = self.nearest(where).distances
+        distances = self.distances(where)
         return np.where(self.contains(where), -distances, distances)
 
     def _directions(
@@ -145,51 +153,19 @@ class Geometry:
         Beside a segment they are across it, exactly, however near; past its end they point away
         from that, and are the left normals of the mean tangents where the distance is 0.
         """
-        tangents = self._tangents()
-        along = tangents[segments]
         at_end = (shares == 0) | (shares == 1)
-        ends = self.end_tangents()[segments, (shares == 1).astype(int)]
-        along = np.where(at_end[:, None], ends, along)
+        ends = self._end_tangents[segments, (shares == 1).astype(int)]
+        along = np.where(at_end[:, None], ends, self._tangents[segments])
         left = np.stack([-along[:, 1], along[:, 0]], axis=1)
         out = np.where((offsets * left).sum(axis=1, keepdims=True) < 0, -left, left)
-        # As far as the rounding of coordinates, of the geometry and of the points, can tell.
-        beyond = at_end & (distances > _ROUNDING * self.scale)
+        beyond = at_end & (distances > self._rounding)
         out[beyond] = offsets[beyond] / distances[beyond, None]
         return out
-
-    def _tangents(self) -> Floats:
-        """Unit vectors along the segments, (k, 2); (0, 0) for points."""
-        along = self.segments[:, 1] - self.segments[:, 0]
-        lengths = np.hypot(along[:, 0], along[:, 1])[:, None]
-        return np.divide(along, lengths, out=np.zeros_like(along), where=lengths > 0)
 
     def vertices(self) -> tuple[Floats, Ints]:
         """The different ends of segments, (v, 2), and which of them each segment joins, (k, 2)."""
         ends, numbers = np.unique(self.segments.reshape(-1, 2), axis=0, return_inverse=True)
         return ends, numbers.reshape(-1, 2).astype(np.int32)
-
-    def end_tangents(self) -> Floats:
-        """Unit vectors along the curve at both ends of each segment, (k, 2, 2).
-
-        The mean direction of all segments that meet there, regardless of which way they run: the
-        principal axis of the sum of t t'. A direction without orientation is a point of the circle
-        at twice its angle, z = (tx + i ty)^2, and there the mean is a sum. Where the segments have
-        no mean direction, as at a right angle, the segment's own.
-        """
-        tangents = self._tangents()
-        vertices, numbers = self.vertices()
-        doubled = (tangents[:, 0] + 1j * tangents[:, 1]) ** 2
-        at_both = np.repeat(doubled, 2)
-        sums = np.bincount(numbers.ravel(), at_both.real, len(vertices)) + 1j * np.bincount(
-            numbers.ravel(), at_both.imag, len(vertices)
-        )
-        mean = sums[numbers]
-        own = np.broadcast_to(tangents[:, None], (len(tangents), 2, 2))
-        root = np.sqrt(mean)
-        size = np.abs(root)
-        clear = (np.abs(mean) > 1e-6)[..., None]
-        unit = np.stack([root.real, root.imag], axis=2) / np.where(size > 0, size, 1)[..., None]
-        return np.where(clear, unit, own)
 
     def __repr__(self) -> str:
         return f"<Geometry: {len(self.segments)} segments>"
@@ -220,3 +196,27 @@ def _segments_of(part: Part) -> Floats:
     segments = np.stack([p[:-1], p[1:]], axis=1)
     kept = segments[(segments[:, 0] != segments[:, 1]).any(axis=1)]
     return kept if len(kept) else np.stack([p[:1], p[:1]], axis=1)
+
+
+def _tangents(segments: Floats) -> Floats:
+    """Unit vectors along segments (k, 2, 2), (k, 2); (0, 0) for points."""
+    along = segments[:, 1] - segments[:, 0]
+    lengths = np.hypot(along[:, 0], along[:, 1])[:, None]
+    return np.divide(along, lengths, out=np.zeros_like(along), where=lengths > 0)
+
+
+def _end_tangents(tangents: Floats, ends: Ints) -> Floats:
+    """Unit vectors along the curve at both ends of each segment, (k, 2, 2).
+
+    The mean direction of all segments that meet there, whichever way they run: the principal axis
+    of the sum of t t'. A direction without orientation is a point of the circle at twice its angle,
+    z = (tx + i ty)^2, and there the mean is a sum. Where there is no mean, as at a right angle, the
+    segment's own.
+    """
+    doubled = np.repeat((tangents[:, 0] + 1j * tangents[:, 1]) ** 2, 2)
+    sums = np.bincount(ends.ravel(), doubled.real) + 1j * np.bincount(ends.ravel(), doubled.imag)
+    mean = sums[ends]
+    clear = np.abs(mean) > 1e-6
+    unit = np.sqrt(np.where(clear, mean / np.where(clear, np.abs(mean), 1), 1))
+    own = np.broadcast_to(tangents[:, None], (*ends.shape, 2))
+    return np.where(clear[..., None], np.stack([unit.real, unit.imag], axis=2), own)

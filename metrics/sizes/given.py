@@ -19,10 +19,11 @@ def number(name: str, value: Any, *, least: float = -np.inf) -> float:
     """A finite real number, not below `least`."""
     if not isinstance(value, Real) or isinstance(value, (bool, np.bool_)):
         raise MetricError(f"{name} must be a number, not {value!r}")
-    if not np.isfinite(value) or value < least:
+    out = float(value)
+    if not np.isfinite(out) or out < least:
         bound = "" if least == -np.inf else f" and not below {least:g}"
         raise MetricError(f"{name} must be finite{bound}, not {value!r}")
-    return float(value)
+    return out
 
 
 def positive(name: str, value: Any) -> float:

@@ -6,7 +6,7 @@ import os
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Floats, as_numbers
 from ..control import ControlSpace
@@ -124,7 +124,7 @@ class Raster(ControlSpace):
             If rasterio is not installed, the file cannot be read, or the raster is rotated.
         """
         try:
-            import rasterio
+            import rasterio  # type: ignore[import-not-found, unused-ignore]
         except ImportError as error:
             raise MetricError(
                 f"{os.fspath(path)} cannot be read without rasterio: python -m pip install rasterio"
@@ -145,10 +145,10 @@ class Raster(ControlSpace):
         ends_x = sorted([affine.c, affine.c + affine.a * columns])
         ends_y = sorted([affine.f, affine.f + affine.e * rows])
         upright = values[:, ::-1] if affine.a < 0 else values
-        origin = "upper" if affine.e < 0 else "lower"
+        origin: Literal["upper", "lower"] = "upper" if affine.e < 0 else "lower"
         return cls(upright, (*ends_x, *ends_y), origin=origin, **options)
 
-    def values(self, points: Floats) -> ArrayLike:
+    def values(self, points: Floats) -> Floats:
         if self.outside == "error":
             self._refuse_outside(points)
         if self.interpolation == "nearest":
@@ -310,12 +310,12 @@ def _filled(sizes: Floats, x: Floats, y: Floats, fill: Any) -> Floats:
         values = sizes[~missing][nearest]
     else:
         values = positive("fill", fill)
-    out = sizes.copy()
+    out: Floats = sizes.copy()
     out[missing] = values
     return out
 
 
-def _cell(edges: Floats, where: Floats) -> np.ndarray[Any, np.dtype[np.intp]]:
+def _cell(edges: Floats, where: Floats) -> NDArray[np.intp]:
     """The cells that coordinates are in; beyond the borders, the outermost."""
     return np.clip(np.searchsorted(edges, where, side="right") - 1, 0, len(edges) - 2)
 

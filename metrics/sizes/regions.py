@@ -134,7 +134,7 @@ def _sizes_of(
     of_numbers: dict[int, float] = {}
     for region, h in sizes.items():
         number = names.get(region) if isinstance(region, str) else region
-        if number not in known:
+        if number is None or number not in known:
             raise MetricError(
                 f"there is no region {region!r}; the names are "
                 f"{', '.join(map(repr, names)) or 'none'}, the numbers {sorted(known)}"
@@ -144,9 +144,9 @@ def _sizes_of(
         default = positive("default", default)
     out = np.empty(len(regions))
     for number in np.unique(regions).tolist():
-        h = of_numbers.get(number, default)
-        if h is None:
+        size = of_numbers.get(number, default)
+        if size is None:
             name = next((repr(n) for n, k in names.items() if k == number), f"number {number}")
             raise MetricError(f"region {name} has no size: add it to sizes, or give default")
-        out[regions == number] = h
+        out[regions == number] = size
     return out

@@ -82,7 +82,7 @@ class Shock(ControlSpace):
         self.is_level_set = callable(front)
         if not self.is_level_set and (gradient is not None or step is not None):
             raise MetricError("gradient and step are for a level set, a front that is a function")
-        self.front = front if self.is_level_set else as_curves(front, "a front")
+        self.front: Any = front if self.is_level_set else as_curves(front, "a front")
 
     def values(self, points: Floats) -> ArrayLike:
         front = self._of_level_set(points) if self.is_level_set else self._of_curves(points)
