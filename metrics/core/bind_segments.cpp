@@ -1,4 +1,7 @@
 // Segments and what spreads from them, for Python.
+#include <tuple>
+#include <vector>
+
 #include "metrics/core/bindings.hpp"
 #include "metrics/core/segments.hpp"
 
@@ -8,6 +11,17 @@ namespace {
 
 using Ends = nb::ndarray<const double, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
 using EndSizes = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+
+// Calls visit(i, x, y) for all points, neighbours one soon after the other, so that what was found
+// for one is a good hint for the next.
+template <typename Visit>
+void in_curve_order(const Points& points, Visit visit) {
+    const double* p = points.data();
+    std::vector<metrics::Box> boxes(points.shape(0));
+    for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i].include(p[2 * i], p[2 * i + 1]);
+    for (std::int32_t i : metrics::curve_order(boxes))
+        visit(std::size_t(i), p[2 * i], p[2 * i + 1]);
+}
 
 void construct_segments(metrics::Segments* self, Ends ends) {
     require(ends.shape(0) > 0, "at least one segment is needed");
@@ -21,12 +35,12 @@ nb::tuple nearest(const metrics::Segments& segments, Points points) {
     Result<double> share(n), foot(n, 2);
     {
         nb::gil_scoped_release release;
-        const double* p = points.data();
-        for (std::size_t i = 0; i < n; ++i) {
-            const metrics::OnSegment place = segments.nearest(p[2 * i], p[2 * i + 1]);
-            number.data[i] = place.segment, share.data[i] = place.share;
+        Index hint = -1;
+        in_curve_order(points, [&](std::size_t i, double x, double y) {
+            const metrics::OnSegment place = segments.nearest(x, y, hint);
+            number.data[i] = hint = place.segment, share.data[i] = place.share;
             foot.data[2 * i] = place.x, foot.data[2 * i + 1] = place.y;
-        }
+        });
     }
     return nb::make_tuple(number.numpy(), share.numpy(), foot.numpy());
 }
@@ -54,10 +68,10 @@ nb::object spread(const metrics::Spreading& spreading, Points points) {
     Result<double> out(points.shape(0));
     {
         nb::gil_scoped_release release;
-        const double* p = points.data();
-        for (std::size_t i = 0; i < out.rows; ++i) {
-            out.data[i] = spreading.at(p[2 * i], p[2 * i + 1]);
-        }
+        Index hint = -1;
+        in_curve_order(points, [&](std::size_t i, double x, double y) {
+            std::tie(out.data[i], hint) = spreading.at(x, y, hint);
+        });
     }
     return out.numpy();
 }

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "metrics/core/boxtree.hpp"
@@ -41,13 +42,14 @@ class Segments {
 
     std::size_t size() const { return segments_.size(); }
 
-    OnSegment nearest(double x, double y) const {
-        const std::int32_t best = tree_.nearest(x, y, [&](std::int32_t i) {
+    // `hint`: a segment that is probably near, -1 for none; it changes the time taken only.
+    OnSegment nearest(double x, double y, std::int32_t hint = -1) const {
+        const auto squared_distance = [&](std::int32_t i) {
             const OnSegment place = foot(i, x, y);
             const double dx = place.x - x, dy = place.y - y;
             return dx * dx + dy * dy;
-        });
-        return foot(best, x, y);
+        };
+        return foot(tree_.nearest(x, y, squared_distance, hint), x, y);
     }
 
     // Whether an odd number of the segments cross the ray from (x, y) to the right: for the
@@ -109,10 +111,12 @@ class Spreading {
         minima_ = segments_.tree_.minima(smaller);
     }
 
-    double at(double x, double y) const {
+    // The size, and the segment that it comes from; `hint` as for Segments::nearest.
+    std::pair<double, std::int32_t> at(double x, double y, std::int32_t hint = -1) const {
         const auto cost = [&](std::int32_t i) { return from_segment(i, x, y); };
-        const std::int32_t best = segments_.tree_.nearest_weighted(x, y, growth_, minima_, cost);
-        return from_segment(best, x, y);
+        const std::int32_t best =
+            segments_.tree_.nearest_weighted(x, y, growth_, minima_, cost, hint);
+        return {from_segment(best, x, y), best};
     }
 
   private:
