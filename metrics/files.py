@@ -1,7 +1,8 @@
 """A control space from files: a mesh and the sizes or metrics at its vertices.
 
 Medit text (``.mesh`` with ``.sol``, as written by Mmg) and BAMG (``.mesh`` with ``.mtr``) are read
-here; ``.vtu`` and ``.msh`` by meshio. What `adaptmesh.write` writes with ``metric=`` is read back.
+here; ``.vtu`` and ``.msh`` by meshio. What `adaptmesh.write` writes with ``metric=`` is read back,
+except from ``.msh`` of version 4.1, where meshio does not understand its names; of 2.2 it is.
 """
 
 from __future__ import annotations
@@ -238,10 +239,14 @@ def _medit_solution(path: Path) -> Floats:
 def _by_meshio(path: Path, field: str | None) -> tuple[_Mesh, Floats]:
     import meshio
 
+    reader = meshio.vtu if path.suffix.lower() == ".vtu" else meshio.gmsh
     try:
-        content = meshio.read(path)
-    except (Exception, SystemExit) as error:  # meshio ends the program on some damaged files
-        raise MetricError(f"{path} cannot be read: {error}") from error
+        content = reader.read(path)
+    except (Exception, SystemExit) as error:  # whatever meshio makes of a damaged file
+        raise MetricError(
+            f"{path} cannot be read by meshio ({type(error).__name__}: {error}); adaptmesh may: "
+            "metrics.Background.on(adaptmesh.read(path), adaptmesh.io.read_fields(path)[name])"
+        ) from error
     triangles = content.cells_dict.get("triangle")
     if triangles is None:
         raise MetricError(f"{path} has no triangles, only {sorted(content.cells_dict)}")

@@ -161,9 +161,6 @@ def sampled(
             f"the curve must return a point for each parameter: {count} are asked for, "
             f"{len(points)} came"
         )
-    # A closed curve ends where it began, but for rounding.
-    if np.abs(points[-1] - points[0]).max() <= 1e-12 * np.abs(points).max():
-        points = np.concatenate([points[:-1], points[:1]])
     return points
 
 

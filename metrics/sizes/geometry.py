@@ -60,7 +60,7 @@ class Geometry:
     ----------
     segments : (k, 2, 2) array of float
         Both ends of each; the same where a point is alone. A vertex that repeats the one before it
-        makes no segment.
+        makes no segment, and a polyline that ends where it began, to rounding, is closed.
     is_polygonal : bool
         Whether it is made of polygons only, so that there is an inside.
 
@@ -191,7 +191,9 @@ def as_curves(geometry: Any, what: str) -> Geometry:
 
 def _segments_of(part: Part) -> Floats:
     p = part.points
-    if part.is_ring and (p[0] != p[-1]).any():
+    if len(p) > 3 and np.abs(p[-1] - p[0]).max() <= _ROUNDING * np.abs(p).max():
+        p = np.concatenate([p[:-1], p[:1]])  # as sin(2 pi) is not 0, but meant to be
+    elif part.is_ring:
         p = np.concatenate([p, p[:1]])
     segments = np.stack([p[:-1], p[1:]], axis=1)
     kept = segments[(segments[:, 0] != segments[:, 1]).any(axis=1)]

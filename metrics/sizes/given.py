@@ -66,7 +66,7 @@ def evaluated(
     wanted = (len(points), *columns)
     if out.shape != wanted:
         raise MetricError(f"{what} must return an array of shape {wanted}, not {out.shape}")
-    finite = np.isfinite(out).reshape(len(points), -1).all(axis=1)
+    finite = np.isfinite(out).all(axis=tuple(range(1, out.ndim)))
     if not finite.all():
         i = int(np.argmin(finite))
         x, y = points[i].tolist()

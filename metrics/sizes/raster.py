@@ -234,7 +234,7 @@ def _as_sizes(values: Any, no_data: float | None) -> Floats:
     if wrong.any():
         row, column = (int(i) for i in np.unravel_index(wrong.argmax(), sizes.shape))
         raise MetricError(
-            f"the raster at row {row}, column {column} is not a size: {sizes[row, column]!r}; "
+            f"the raster at row {row}, column {column} is not a size: {float(sizes[row, column])}; "
             "a size is positive and finite, no_data=... names what marks cells without one"
         )
     if np.isnan(sizes).all():
@@ -283,8 +283,8 @@ def _coordinates(name: str, values: Any, count: int, of: str) -> Floats:
     if not np.isfinite(out).all() or not ((steps > 0).all() or (steps < 0).all()):
         i = int(np.argmin(steps * np.sign(steps[0]) > 0)) + 1
         raise MetricError(
-            f"{name} must rise or fall all along, but {name}[{i}] = {out[i]!r} "
-            f"follows {out[i - 1]!r}"
+            f"{name} must rise or fall all along, but {name}[{i}] = {float(out[i])} "
+            f"follows {float(out[i - 1])}"
         )
     return out
 

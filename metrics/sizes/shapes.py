@@ -70,7 +70,7 @@ def _of_geojson(item: Mapping[str, Any]) -> Iterator[Part]:
     if kind == "Point":
         if len(coordinates):
             yield Part(_planar([coordinates]))
-    elif kind == "LineString":
+    elif kind in ("LineString", "LinearRing"):
         yield Part(_planar(coordinates))
     elif kind == "Polygon":
         yield from (Part(_planar(ring), True) for ring in coordinates)
