@@ -220,16 +220,16 @@ def _of_data_array(data: Any) -> tuple[Any, Any, Any, float | None]:
 
 def _as_sizes(values: Any, no_data: float | None) -> Floats:
     """Sizes (rows, columns), NaN where there is none."""
-    mask = np.ma.getmaskarray(values) if isinstance(values, np.ma.MaskedArray) else None
-    sizes = as_numbers(np.ma.getdata(values), "the raster").astype(np.float64)
+    raw = as_numbers(np.ma.getdata(values), "the raster")
+    sizes = raw.astype(np.float64)
     if sizes.ndim != 2 or sizes.size == 0:
         raise MetricError(f"the raster must have the shape (rows, columns), not {sizes.shape}")
     if no_data is not None:
-        # The marker as the array would hold it: -3.4e38 in single precision is not -3.4e38.
-        marker = np.asarray(no_data).astype(np.asarray(values).dtype) if mask is None else no_data
-        sizes[sizes == float(marker)] = np.nan
-    if mask is not None:
-        sizes[mask] = np.nan
+        with np.errstate(over="ignore"):  # as the array holds it: -3.4e38 is another in float32
+            is_float = raw.dtype.kind == "f"
+            marker = raw.dtype.type(no_data) if is_float else np.float64(no_data)
+        sizes[raw == marker] = np.nan
+    sizes[np.ma.getmaskarray(values)] = np.nan
     wrong = ~(np.isnan(sizes) | ((sizes > 0) & np.isfinite(sizes)))
     if wrong.any():
         row, column = (int(i) for i in np.unravel_index(wrong.argmax(), sizes.shape))
