@@ -32,7 +32,7 @@ sizes = np.where(heights > 0, np.clip(40 / np.maximum(rise, 0.01), 25, 200), np.
 raster = metrics.Raster(sizes, x=x, y=y, fill="nearest")
 print(raster)
 
-# Next to a steep slope the raster may jump; whatever else is wanted is added with &.
+# Whatever else is wanted is added with &: a camp between the hills, to be seen in detail.
 camp = metrics.Distance((4150, 2300), h_min=15, growth=0.25)
 field = raster & camp
 

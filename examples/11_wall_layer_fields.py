@@ -60,7 +60,7 @@ am.plot(
     mesh,
     field,
     ellipses=True,
-    bounds=(-0.506, -0.006, -0.486, 0.006),
+    bounds=(-0.511, -0.006, -0.491, 0.006),
     path=out / "11_wall_layer_fields_detail.png",
     title="The nose",
 )

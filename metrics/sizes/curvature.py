@@ -59,6 +59,9 @@ class BoundaryCurvature(ControlSpace):
     curvature), exact for points on a circle however they are spaced. At ends, at corners and where
     more than two segments meet, each segment has the size of its other end.
 
+    The chord formula is the limit for a chord_error well below the radius; where there may be
+    smaller circles than that, give elements_per_circle too.
+
     Examples
     --------
     >>> from metrics import tensor

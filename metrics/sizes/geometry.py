@@ -17,6 +17,7 @@ __all__ = ["Geometry", "Nearest", "as_geometry"]
 
 # A distance below this, relative to the coordinates, is nothing but rounding.
 _ROUNDING = 32 * np.finfo(np.float64).eps
+_LARGEST = 1e150
 
 
 class Nearest(NamedTuple):
@@ -52,7 +53,7 @@ class Geometry:
     ----------
     geometry : array_like, shapely geometry, or sequence of these
         A point (2,), a polyline (n, 2), or polylines (k, n, 2), of which segments are (k, 2, 2);
-        anything with a ``__geo_interface__``, of any type; anything with `points` (n, 2) and
+        GeoJSON as a dict, anything with a ``__geo_interface__``; anything with `points` (n, 2) and
         `segments` (k, 2), such as an `adaptmesh.Domain`; or a list of these. Curves are given as
         polylines. z is ignored.
 
@@ -86,8 +87,12 @@ class Geometry:
     @classmethod
     def polygon(cls, outer: ArrayLike, holes: Sequence[ArrayLike] = ()) -> Geometry:
         """The area in a ring (n, 2), closed or not, without that in the rings of its holes."""
+        rings = [as_points(ring) for ring in (outer, *holes)]
+        for k, ring in enumerate(rings):
+            if len(np.unique(ring, axis=0)) < 3:
+                raise MetricError(f"ring {k} of the polygon has less than 3 different points")
         self = cls.__new__(cls)
-        self._build([Part(as_points(ring), True) for ring in (outer, *holes)])
+        self._build([Part(ring, True) for ring in rings])
         return self
 
     def _build(self, parts: list[Part]) -> None:
@@ -97,8 +102,11 @@ class Geometry:
         self.is_polygonal = all(part.is_ring for part in parts)
         self.segments = np.ascontiguousarray(np.concatenate(pieces))
         self.segments.flags.writeable = False
+        largest = float(np.abs(self.segments).max())
+        if largest > _LARGEST:
+            raise MetricError(f"a coordinate of {largest:.3g} is too large: its square overflows")
         self._search = _core.Segments(self.segments.reshape(-1, 4))
-        self._rounding = _ROUNDING * float(np.abs(self.segments).max())
+        self._rounding = _ROUNDING * largest
         self._tangents = _tangents(self.segments)
         self._end_tangents = _end_tangents(self._tangents, self.vertices()[1])
 

@@ -28,7 +28,9 @@ def parts_of(geometry: Any) -> Iterator[Part]:
     MetricError
         For anything else, for no parts, and for coordinates that are not finite.
     """
-    if hasattr(geometry, "__geo_interface__"):
+    if isinstance(geometry, Mapping):
+        yield from _of_geojson(geometry)
+    elif hasattr(geometry, "__geo_interface__"):
         yield from _of_geojson(geometry.__geo_interface__)
     elif hasattr(geometry, "points") and hasattr(geometry, "segments"):
         points = as_points(geometry.points)

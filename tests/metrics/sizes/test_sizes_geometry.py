@@ -158,6 +158,8 @@ SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
         (shapely.GeometryCollection([shapely.Point(0, 0), shapely.box(0, 0, 1, 1)]), 5, False),
         (SimpleNamespace(points=np.array(SQUARE), segments=[(0, 2), (1, 3)]), 2, False),
         (lambda: Geometry.polygon(SQUARE), 4, True),
+        ({"type": "LineString", "coordinates": SQUARE}, 3, False),
+        ({"type": "Feature", "geometry": shapely.box(0, 0, 1, 1).__geo_interface__}, 4, True),
         ([(0, 0), (0, 0), (1, 0), (1, 0)], 1, False),
     ],
 )
@@ -172,6 +174,7 @@ def test_forms(given, segments, polygonal):
     [
         ([], "empty|shape"),
         (shapely.Point(), "empty"),
+        ([(0, 0), (1e200, 0)], "coordinate of 1e\\+200 is too large"),
         (shapely.Polygon(), "empty"),
         (None, "not NoneType"),
         ("wall", "not str"),
@@ -191,6 +194,11 @@ def test_refused(given, message):
 def test_a_line_has_no_inside():
     with pytest.raises(MetricError, match=r"Geometry\.polygon"):
         Geometry(SQUARE).contains([[0.5, 0.5]])
+
+
+def test_a_ring_of_two_points():
+    with pytest.raises(MetricError, match="ring 1 of the polygon has less than 3"):
+        Geometry.polygon(SQUARE, [[(0.2, 0.2), (0.4, 0.4), (0.2, 0.2)]])
 
 
 def test_no_points():

@@ -122,6 +122,19 @@ def test_a_layer_turns_with_its_wall(angle, seed):
     np.testing.assert_allclose(there, turn @ here @ turn.T, rtol=1e-6, atol=1e-6)
 
 
+@given(st.integers(0, 2**32 - 1), st.sampled_from([1e-9, 1.0, 1e9]))
+@settings(max_examples=30, deadline=None)
+def test_the_sizes_of_a_layer_depend_on_the_distance_only(seed, scale):
+    """So they are continuous, also where the direction is not: on the medial axis."""
+    rng = np.random.default_rng(seed)
+    wall, points = scale * rng.uniform(-1, 1, (8, 2)), scale * rng.uniform(-1.5, 1.5, (50, 2))
+    d = Geometry(wall).distances(points)
+    got = sizes(BoundaryLayer(wall, 0.001 * scale, 1.3, 0.1 * scale, 0.3 * scale), points)
+    across = np.minimum(0.001 * scale + 0.3 * d, 0.3 * scale)
+    np.testing.assert_allclose(got[:, 0], across, rtol=1e-9)
+    np.testing.assert_allclose(got[:, 1], np.maximum(across, 0.1 * scale), rtol=1e-6)
+
+
 def test_the_size_along_is_asked_for_on_the_wall():
     layer = BoundaryLayer(WALL, 0.001, 1.2, lambda x: 0.1 + 0.01 * x[:, 0])
     got = layer([[2.0, 0.01], [7.0, -0.02]])
