@@ -53,7 +53,8 @@ class Shock(ControlSpace):
         Of points (n, 2), returns the gradient (n, 2) of the level set.
     step : float, optional
         Without `gradient`, this is the step s of the central differences
-        ``(phi(x + s) - phi(x - s)) / (2 s)``; a tenth of `across` if not given. The level set is then also asked for as far beyond the points.
+        ``(phi(x + s) - phi(x - s)) / (2 s)``;
+        a tenth of `across` if not given. The level set is asked for that far beyond the points.
 
     Raises
     ------

@@ -81,7 +81,11 @@ def test_inside_is_that_of_shapely():
     np.testing.assert_allclose(geometry.signed_distance(points), wanted, atol=1e-14)
 
 
-@given(st.lists(st.tuples(st.integers(-3, 3), st.integers(-3, 3)), min_size=3, max_size=12))
+@given(
+    st.lists(
+        st.tuples(st.integers(-3, 3), st.integers(-3, 3)), min_size=3, max_size=12, unique=True
+    )
+)
 @settings(max_examples=60, deadline=None)
 def test_inside_of_any_ring_is_an_odd_winding(ring):
     """Rings through integer points, which may cross themselves, by counting all crossings."""
