@@ -53,7 +53,8 @@ inline std::vector<std::int32_t> curve_order(const std::vector<Box>& boxes) {
     for (const Box& box : boxes) all.include(box);
     const double side_x = all.x1 - all.x0, side_y = all.y1 - all.y0;
     const auto cell = [](double centre, double low, double side) {
-        return side > 0 ? std::uint32_t((centre - low) / side * 65535) : 0u;
+        const double place = (centre - low) / side * 65535;  // NaN where the side is 0 or infinite
+        return place > 0 && place <= 65535 ? std::uint32_t(place) : 0u;
     };
     std::vector<std::uint64_t> keys(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -20,11 +20,11 @@ __all__ = ["Shock"]
 
 
 class _Front(NamedTuple):
-    """For n points: the distance to the front, the direction across it, the point on it."""
+    """For n points: the distance to the front, the direction across it, where to ask for along."""
 
     distances: Floats
     normals: Floats
-    feet: Floats
+    places: Floats
 
 
 class Shock(ControlSpace):
@@ -43,7 +43,8 @@ class Shock(ControlSpace):
     across : float
         The size across the front, on it.
     along : number, callable or ControlSpace
-        The size along the front; it is asked for at the nearest point of the front.
+        The size along the front; it is asked for at the nearest point of a curve, or with a level
+        set at the point itself.
     growth : float, optional
         Slope dh/dd, not negative.
     h_max : float, optional
@@ -53,8 +54,8 @@ class Shock(ControlSpace):
         Of points (n, 2), returns the gradient (n, 2) of the level set.
     step : float, optional
         Without `gradient`, this is the step s of the central differences
-        ``(phi(x + s) - phi(x - s)) / (2 s)``;
-        a tenth of `across` if not given. The level set is asked for that far beyond the points.
+        ``(phi(x + s) - phi(x - s)) / (2 s)``; a tenth of `across` if not given. The level set is
+        asked for that far beyond the points.
 
     Raises
     ------
@@ -89,7 +90,7 @@ class Shock(ControlSpace):
         front = self._of_level_set(points) if self.is_level_set else self._of_curves(points)
         flat = ~front.normals.any(axis=1)
         front.normals[flat] = (1, 0)
-        along = size_along(self.along, front.feet, front.normals)
+        along = size_along(self.along, front.places, front.normals)
         along[flat] = self.across  # no direction: both sizes are the smaller one
         return layered(front.distances, front.normals, self.across, along, self.slope, self.h_max)
 
@@ -112,11 +113,9 @@ class Shock(ControlSpace):
             )
         safe = np.where(flat, 1, steepness)
         normals = slopes / safe[:, None]
-        offsets = phi / safe
-        feet = points - offsets[:, None] * normals
         far = self.h_max / self.slope if self.slope > 0 else 0.0  # where the size is h_max
-        distances = np.where(lost, far, np.abs(offsets))
-        return _Front(distances, normals, feet)
+        distances = np.where(lost, far, np.abs(phi) / safe)
+        return _Front(distances, normals, points)
 
     def _gradients(self, points: Floats) -> Floats:
         if self.gradient is not None:

@@ -210,6 +210,12 @@ def test_no_points():
     assert near.distances.shape == (0,) and near.directions.shape == (0, 2)
 
 
+def test_points_as_far_as_floats_go():
+    far = np.array([[1e308, -1e308], [-1e308, 1e308], [0.5, 0.5]])
+    np.testing.assert_array_equal(Geometry(SQUARE).nearest(far).distances[2], 0.5)
+    assert (Geometry.polygon(SQUARE).contains(far) == [False, False, True]).all()
+
+
 def test_pickled():
     geometry = Geometry(shapely.box(0, 0, 1, 1) - shapely.box(0.4, 0.4, 0.6, 0.6))
     again = pickle.loads(pickle.dumps(geometry))
