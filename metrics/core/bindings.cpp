@@ -1,60 +1,27 @@
 // The module metrics._core: arrays in, arrays out, without the interpreter lock.
 #include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 #include "metrics/core/background.hpp"
+#include "metrics/core/bindings.hpp"
 #include "metrics/core/tensor.hpp"
 
-namespace nb = nanobind;
 using namespace nb::literals;
-using metrics::Index;
 using metrics::Tensor;
 
 namespace {
-
-using Values = nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
-using Points = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
-using Tensors = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-using Matrices = nb::ndarray<const double, nb::shape<-1, 2, 2>, nb::c_contig, nb::device::cpu>;
-using Triangles = nb::ndarray<const Index, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-using Indices = nb::ndarray<const Index, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
-
-// A numpy array in the making: `data` is filled without the lock, `numpy` hands it over.
-template <typename T>
-struct Result {
-    std::size_t rows, columns;  // columns 0: a one-dimensional array
-    T* data;
-    nb::capsule owner;
-
-    explicit Result(std::size_t rows, std::size_t columns = 0)
-        : rows(rows),
-          columns(columns),
-          data(new T[rows * (columns ? columns : 1)]),
-          owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); }) {}
-
-    nb::object numpy() const {
-        const std::size_t shape[2] = {rows, columns};
-        return nb::cast(nb::ndarray<nb::numpy, T>(data, columns ? 2 : 1, shape, owner));
-    }
-};
 
 Tensor load(const double* p) {
     return {p[0], p[1], p[2]};
 }
 void store(double* p, Tensor t) {
     p[0] = t.a, p[1] = t.b, p[2] = t.c;
-}
-
-void require(bool condition, const char* message) {
-    if (!condition) throw std::invalid_argument(message);
 }
 
 // Fills a packed array with make(i), and finds the first i that is not accepted (-1: all are).
@@ -248,4 +215,6 @@ NB_MODULE(_core, m) {
         .def_prop_ro("diagonal", &metrics::Background::diagonal)
         .def("evaluate", &evaluate, "points"_a, "hints"_a = nb::none(),
              "Metrics (n, 3), triangles (n,), distances from the mesh (n,).");
+
+    bind_segments(m);
 }

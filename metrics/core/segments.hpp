@@ -1,0 +1,153 @@
+// Segments in the plane: the nearest of them, and the size that spreads from them.
+//
+//                x           nearest point p = a + share (b - a), share in [0, 1]
+//                |           a point is a segment whose ends are the same
+//        a ------p---- b
+//
+// Exact to rounding: distances are to segments, not to samples of them. Constant after
+// construction: any number of threads may ask at once.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "metrics/core/boxtree.hpp"
+
+namespace metrics {
+
+// The point of a segment that is nearest, or least in another sense.
+struct OnSegment {
+    std::int32_t segment;
+    double share;  // of the way from a to b
+    double x, y;
+};
+
+class Segments {
+  public:
+    // ends: count times ax, ay, bx, by.
+    Segments(const double* ends, std::size_t count) {
+        std::vector<Box> boxes(count);
+        segments_.reserve(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double* p = ends + 4 * i;
+            segments_.push_back({p[0], p[1], p[2], p[3]});
+            boxes[i].include(p[0], p[1]), boxes[i].include(p[2], p[3]);
+        }
+        tree_ = BoxTree(boxes);
+    }
+
+    std::size_t size() const { return segments_.size(); }
+
+    // `hint`: a segment that is probably near, -1 for none; it changes the time taken only.
+    OnSegment nearest(double x, double y, std::int32_t hint = -1) const {
+        const auto squared_distance = [&](std::int32_t i) {
+            const OnSegment place = foot(i, x, y);
+            const double dx = place.x - x, dy = place.y - y;
+            return dx * dx + dy * dy;
+        };
+        return foot(tree_.nearest(x, y, squared_distance, hint), x, y);
+    }
+
+    // Whether an odd number of the segments cross the ray from (x, y) to the right: for the
+    // segments of closed rings, whether the point is inside. Ends belong to what is above them.
+    bool encloses(double x, double y) const {
+        bool odd = false;
+        const auto reached = [x, y](const Box& box) {
+            return box.y0 <= y && y < box.y1 && x <= box.x1;
+        };
+        tree_.matching(reached, [&](std::int32_t i) {
+            const Segment& s = segments_[i];
+            const double rise = s.by - s.ay;
+            const double side = (s.bx - s.ax) * (y - s.ay) - (x - s.ax) * rise;
+            odd ^= rise > 0 ? side > 0 : side < 0;
+            return false;
+        });
+        return odd;
+    }
+
+  private:
+    friend class Spreading;
+
+    struct Segment {
+        double ax, ay, bx, by;
+        double length() const { return std::hypot(bx - ax, by - ay); }
+    };
+
+    OnSegment at(std::int32_t i, double share) const {
+        const Segment& s = segments_[i];
+        if (share <= 0) return {i, 0, s.ax, s.ay};
+        if (share >= 1) return {i, 1, s.bx, s.by};
+        return {i, share, s.ax + share * (s.bx - s.ax), s.ay + share * (s.by - s.ay)};
+    }
+
+    OnSegment foot(std::int32_t i, double x, double y) const {
+        const Segment& s = segments_[i];
+        const double ex = s.bx - s.ax, ey = s.by - s.ay;
+        const double square = ex * ex + ey * ey;
+        const double along = (x - s.ax) * ex + (y - s.ay) * ey;
+        return at(i, square > 0 ? along / square : 0);
+    }
+
+    std::vector<Segment> segments_;
+    BoxTree tree_;
+};
+
+// Sizes at the ends of segments, linear along them, that grow with the distance: at x the least of
+// h(p) + growth |x - p| over all points p of all segments. So it changes by no more than growth per
+// unit of length anywhere off the segments.
+class Spreading {
+  public:
+    // sizes: at both ends of each segment.
+    Spreading(const Segments& segments, const double* sizes, double growth)
+        : segments_(segments), sizes_(sizes, sizes + 2 * segments.size()), growth_(growth) {
+        std::vector<double> smaller(segments.size());
+        for (std::size_t i = 0; i < smaller.size(); ++i) {
+            smaller[i] = std::min(sizes_[2 * i], sizes_[2 * i + 1]);
+        }
+        minima_ = segments_.tree_.minima(smaller);
+    }
+
+    // The size, and the segment that it comes from; `hint` as for Segments::nearest.
+    std::pair<double, std::int32_t> at(double x, double y, std::int32_t hint = -1) const {
+        const auto cost = [&](std::int32_t i) { return from_segment(i, x, y); };
+        const std::int32_t best =
+            segments_.tree_.nearest_weighted(x, y, growth_, minima_, cost, hint);
+        return {from_segment(best, x, y), best};
+    }
+
+  private:
+    // Along the segment, s from a and q off it, h + growth * distance is
+    //     h_a + m s + growth sqrt((s - s0)^2 + q^2),
+    // convex in s, and least at s0 - q m / sqrt(growth^2 - m^2); where the size itself changes
+    // faster than growth, |m| >= growth, at the end where it is smaller.
+    double from_segment(std::int32_t i, double x, double y) const {
+        const Segments::Segment& s = segments_.segments_[i];
+        const double length = s.length(), h0 = sizes_[2 * i], h1 = sizes_[2 * i + 1];
+        double share = 0;
+        if (length > 0) {
+            const double tx = (s.bx - s.ax) / length, ty = (s.by - s.ay) / length;
+            const double s0 = (x - s.ax) * tx + (y - s.ay) * ty;
+            const double q = std::fabs((x - s.ax) * ty - (y - s.ay) * tx);
+            const double m = (h1 - h0) / length, rest = growth_ * growth_ - m * m;
+            if (rest > 0) {
+                share = (s0 - q * m / std::sqrt(rest)) / length;
+            } else {
+                share = m > 0 ? 0 : 1;
+            }
+        }
+        const OnSegment place = segments_.at(i, share);
+        const double size = h0 + place.share * (h1 - h0);
+        return size + growth_ * std::hypot(place.x - x, place.y - y);
+    }
+
+    Segments segments_;
+    std::vector<double> sizes_;
+    double growth_;
+    std::vector<std::vector<double>> minima_;
+};
+
+}  // namespace metrics

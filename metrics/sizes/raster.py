@@ -1,0 +1,329 @@
+"""Sizes from a raster: an image, a grid of numbers, a GeoTIFF."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import Floats, as_numbers
+from ..control import ControlSpace
+from ..errors import MetricError
+from .given import chosen, number, positive
+
+__all__ = ["Raster"]
+
+_X_NAMES = ("x", "lon", "longitude", "easting")
+_Y_NAMES = ("y", "lat", "latitude", "northing")
+# A point this far beyond the border, relative to the size of the raster, is on it by rounding.
+_BORDER = 1e-9
+
+
+class Raster(ControlSpace):
+    """Sizes h at the centres of the cells (pixels) of a rectangular grid.
+
+    ::
+
+        origin="upper": row 0 is at the top          origin="lower": row 0 is at the bottom
+
+          y1 +-------+-------+                         y1 +-------+-------+
+             | [0,0] | [0,1] |                            | [1,0] | [1,1] |
+             +-------+-------+                            +-------+-------+
+             | [1,0] | [1,1] |                            | [0,0] | [0,1] |
+          y0 +-------+-------+                         y0 +-------+-------+
+            x0              x1                           x0              x1
+
+    Parameters
+    ----------
+    values : (rows, columns) array_like, or xarray.DataArray
+        Sizes, with y along the rows and x along the columns. A DataArray brings its coordinates;
+        its dimensions are called x and y, lon and lat, longitude and latitude, or easting and
+        northing, in either order.
+    extent : (x0, x1, y0, y1), optional
+        The outer borders of the outer cells, as for ``matplotlib.pyplot.imshow``.
+    x, y : (columns,) and (rows,) array_like, optional
+        Instead of `extent`, the centres of the cells, rising or falling, evenly spaced or not.
+        Falling y have row 0 at the top.
+    origin : {"upper", "lower"}, optional
+        With `extent`, and only then, needed: whether row 0 is at the top, as in images and most
+        GeoTIFFs, or at the bottom.
+    no_data : float, optional
+        The number that marks cells without a value. NaN and masked cells are always without.
+    fill : {"error", "nearest"} or float, optional
+        What cells without a value get: nothing, so that a point that needs one is an error; the
+        value of the nearest cell that has one; or this size.
+    interpolation : {"linear", "nearest"}, optional
+        Bilinear in h between the centres, and constant from the outermost centres to the border;
+        or the value of the cell that the point is in.
+    outside : {"clamp", "error"}, optional
+        For a point beyond the borders: the value at the nearest point of the border, or a
+        `MetricError` that names the point.
+
+    Raises
+    ------
+    MetricError
+        Names the argument, or the cell (row, column) whose value is not a size.
+
+    Examples
+    --------
+    >>> from metrics import tensor
+    >>> field = Raster([[1.0, 2.0], [3.0, 4.0]], extent=(0, 2, 0, 2), origin="upper")
+    >>> tensor.sizes(field([[0.5, 1.5], [1.0, 1.0]]))[:, 0]
+    array([1. , 2.5])
+    """
+
+    def __init__(
+        self,
+        values: ArrayLike | Any,
+        extent: tuple[float, float, float, float] | None = None,
+        *,
+        x: ArrayLike | None = None,
+        y: ArrayLike | None = None,
+        origin: Literal["upper", "lower"] | None = None,
+        no_data: float | None = None,
+        fill: Literal["error", "nearest"] | float = "error",
+        interpolation: Literal["linear", "nearest"] = "linear",
+        outside: Literal["clamp", "error"] = "clamp",
+    ) -> None:
+        self.interpolation = chosen("interpolation", interpolation, ("linear", "nearest"))
+        self.outside = chosen("outside", outside, ("clamp", "error"))
+        if hasattr(values, "dims") and hasattr(values, "coords"):
+            if extent is not None or x is not None or y is not None:
+                raise MetricError("a DataArray has coordinates: give neither extent nor x and y")
+            values, x, y, marker = _of_data_array(values)
+            no_data = marker if no_data is None else no_data
+        sizes = _as_sizes(values, no_data)
+        columns, rows = _centres(sizes, extent, x, y, origin)
+        if columns[0] > columns[-1]:
+            columns, sizes = columns[::-1], sizes[:, ::-1]
+        if rows[0] > rows[-1]:
+            rows, sizes = rows[::-1], sizes[::-1]
+        #: Centres, rising, and the sizes there with row 0 at the bottom; NaN where there is none.
+        self.x, self.y = np.ascontiguousarray(columns), np.ascontiguousarray(rows)
+        self.sizes = _filled(np.ascontiguousarray(sizes), self.x, self.y, fill)
+        self._x_edges = _edges(self.x, None if extent is None else extent[:2])
+        self._y_edges = _edges(self.y, None if extent is None else extent[2:])
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str], band: int = 1, **options: Any) -> Raster:
+        """A raster from a file that rasterio reads, such as a GeoTIFF.
+
+        Parameters
+        ----------
+        path : str or path-like
+        band : int, optional
+            Which band has the sizes, from 1.
+        **options
+            `no_data` (that of the file if not given), `fill`, `interpolation`, `outside`.
+
+        Raises
+        ------
+        MetricError
+            If rasterio is not installed, the file cannot be read, or the raster is rotated.
+        """
+        try:
+            import rasterio  # type: ignore[import-not-found, unused-ignore]
+        except ImportError as error:
+            raise MetricError(
+                f"{os.fspath(path)} cannot be read without rasterio: python -m pip install rasterio"
+            ) from error
+        try:
+            with rasterio.open(path) as file:
+                values, affine, marker = file.read(band), file.transform, file.nodata
+        except (rasterio.errors.RasterioError, IndexError) as error:
+            raise MetricError(f"{os.fspath(path)} cannot be read: {error}") from error
+        if affine.b != 0 or affine.d != 0:
+            raise MetricError(f"{os.fspath(path)} is rotated or sheared: warp it to be north-up")
+        rows, columns = values.shape
+        options.setdefault("no_data", marker)
+        x = affine.c + affine.a * (np.arange(columns) + 0.5)
+        y = affine.f + affine.e * (np.arange(rows) + 0.5)
+        if rows > 1 and columns > 1:
+            return cls(values, x=x, y=y, **options)
+        ends_x = sorted([affine.c, affine.c + affine.a * columns])
+        ends_y = sorted([affine.f, affine.f + affine.e * rows])
+        upright = values[:, ::-1] if affine.a < 0 else values
+        origin: Literal["upper", "lower"] = "upper" if affine.e < 0 else "lower"
+        return cls(upright, (*ends_x, *ends_y), origin=origin, **options)
+
+    def values(self, points: Floats) -> Floats:
+        if self.outside == "error":
+            self._refuse_outside(points)
+        if self.interpolation == "nearest":
+            sizes = self.sizes[
+                _cell(self._y_edges, points[:, 1]), _cell(self._x_edges, points[:, 0])
+            ]
+        else:
+            sizes = self._bilinear(points)
+        missing = np.isnan(sizes)
+        if missing.any():
+            i = int(missing.argmax())
+            px, py = points[i].tolist()
+            raise MetricError(
+                f"the raster has no data at point {i} ({px!r}, {py!r}): choose what is there with "
+                'fill="nearest" or fill=size'
+            )
+        return sizes
+
+    def _bilinear(self, points: Floats) -> Floats:
+        left, right, tx = _between(self.x, points[:, 0])
+        below, above, ty = _between(self.y, points[:, 1])
+        total = np.zeros(len(points))
+        for row, weight_y in ((below, 1 - ty), (above, ty)):
+            for column, weight_x in ((left, 1 - tx), (right, tx)):
+                weight = weight_x * weight_y
+                # A cell of no weight is not needed, whether it has data or not.
+                total += np.where(weight > 0, weight * self.sizes[row, column], 0)
+        return total
+
+    def _refuse_outside(self, points: Floats) -> None:
+        edges = np.array([self._x_edges[[0, -1]], self._y_edges[[0, -1]]])
+        margin = _BORDER * np.ptp(edges, axis=1).max()
+        beyond = ((points < edges[:, 0] - margin) | (points > edges[:, 1] + margin)).any(axis=1)
+        if beyond.any():
+            i = int(beyond.argmax())
+            px, py = points[i].tolist()
+            (x0, x1), (y0, y1) = edges.tolist()
+            raise MetricError(
+                f"point {i} ({px!r}, {py!r}) is outside of the raster [{x0:g}, {x1:g}] x "
+                f'[{y0:g}, {y1:g}]; outside="clamp" takes the nearest value'
+            )
+
+    def __repr__(self) -> str:
+        rows, columns = self.sizes.shape
+        (x0, x1), (y0, y1) = self._x_edges[[0, -1]].tolist(), self._y_edges[[0, -1]].tolist()
+        return f"<Raster: {rows} x {columns} on [{x0:g}, {x1:g}] x [{y0:g}, {y1:g}]>"
+
+
+def _of_data_array(data: Any) -> tuple[Any, Any, Any, float | None]:
+    """Values with y along the rows, coordinates, and the no-data marker of an xarray.DataArray."""
+    dims = [str(dim) for dim in data.dims]
+    x_dims = [dim for dim in dims if dim.lower() in _X_NAMES]
+    y_dims = [dim for dim in dims if dim.lower() in _Y_NAMES]
+    if len(dims) != 2 or len(x_dims) != 1 or len(y_dims) != 1:
+        raise MetricError(
+            f"the DataArray has the dimensions {tuple(dims)}: two are wanted, one of "
+            f"{', '.join(_X_NAMES)} and one of {', '.join(_Y_NAMES)}; select or rename them"
+        )
+    values = np.asarray(data.values)
+    if dims[0] == x_dims[0]:
+        values = values.T
+    marker = getattr(data, "attrs", {}).get("_FillValue")
+    for dim in dims:
+        if dim not in data.coords:
+            raise MetricError(f"the DataArray has no coordinates along {dim!r}")
+    x, y = (np.asarray(data.coords[dim[0]].values) for dim in (x_dims, y_dims))
+    return values, x, y, None if marker is None else float(marker)
+
+
+def _as_sizes(values: Any, no_data: float | None) -> Floats:
+    """Sizes (rows, columns), NaN where there is none."""
+    raw = as_numbers(np.ma.getdata(values), "the raster")
+    sizes = raw.astype(np.float64)
+    if sizes.ndim != 2 or sizes.size == 0:
+        raise MetricError(f"the raster must have the shape (rows, columns), not {sizes.shape}")
+    if no_data is not None:
+        with np.errstate(over="ignore"):  # as the array holds it: -3.4e38 is another in float32
+            is_float = raw.dtype.kind == "f"
+            marker = raw.dtype.type(no_data) if is_float else np.float64(no_data)
+        sizes[raw == marker] = np.nan
+    sizes[np.ma.getmaskarray(values)] = np.nan
+    wrong = ~(np.isnan(sizes) | ((sizes > 0) & np.isfinite(sizes)))
+    if wrong.any():
+        row, column = (int(i) for i in np.unravel_index(wrong.argmax(), sizes.shape))
+        raise MetricError(
+            f"the raster at row {row}, column {column} is not a size: {float(sizes[row, column])}; "
+            "a size is positive and finite, no_data=... names what marks cells without one"
+        )
+    if np.isnan(sizes).all():
+        raise MetricError("no cell of the raster has data")
+    return sizes
+
+
+def _centres(
+    sizes: Floats, extent: Any, x: Any, y: Any, origin: str | None
+) -> tuple[Floats, Floats]:
+    """The centres of columns and rows, in the order of the array."""
+    rows, columns = sizes.shape
+    if extent is not None:
+        if x is not None or y is not None:
+            raise MetricError("give either extent or x and y, not both")
+        if origin is None:
+            raise MetricError(
+                'give origin="upper" if row 0 of the raster is at the top, as in images, or '
+                'origin="lower" if it is at the bottom'
+            )
+        chosen("origin", origin, ("upper", "lower"))
+        if len(extent) != 4:
+            raise MetricError(f"extent must be (x0, x1, y0, y1), not {extent!r}")
+        x0, x1, y0, y1 = (number("extent", value) for value in extent)
+        if not (x0 < x1 and y0 < y1):
+            raise MetricError(f"extent must be (x0, x1, y0, y1) with x0 < x1 and y0 < y1: {extent}")
+        across = x0 + (x1 - x0) * (np.arange(columns) + 0.5) / columns
+        upwards = y0 + (y1 - y0) * (np.arange(rows) + 0.5) / rows
+        return across, upwards[::-1] if origin == "upper" else upwards
+    if x is None or y is None:
+        raise MetricError("give the place of the raster: extent=(x0, x1, y0, y1), or x and y")
+    if origin is not None:
+        raise MetricError("origin goes with extent; with x and y, their order tells it")
+    return _coordinates("x", x, columns, "columns"), _coordinates("y", y, rows, "rows")
+
+
+def _coordinates(name: str, values: Any, count: int, of: str) -> Floats:
+    out = as_numbers(values, name).astype(np.float64)
+    if out.shape != (count,):
+        raise MetricError(
+            f"{name} must have the shape ({count},), one for each of the {of}, not {out.shape}"
+        )
+    if count < 2:
+        raise MetricError(f"a single {name} has no width: give extent instead")
+    steps = np.diff(out)
+    if not np.isfinite(out).all() or not ((steps > 0).all() or (steps < 0).all()):
+        i = int(np.argmin(steps * np.sign(steps[0]) > 0)) + 1
+        raise MetricError(
+            f"{name} must rise or fall all along, but {name}[{i}] = {float(out[i])} "
+            f"follows {float(out[i - 1])}"
+        )
+    return out
+
+
+def _edges(centres: Floats, ends: Any) -> Floats:
+    """Borders between cells: half way between centres, and as far beyond the outermost ones."""
+    middle = 0.5 * (centres[:-1] + centres[1:])
+    if ends is None:
+        ends = 2 * centres[0] - middle[0], 2 * centres[-1] - middle[-1]
+    return np.concatenate([[float(ends[0])], middle, [float(ends[1])]])
+
+
+def _filled(sizes: Floats, x: Floats, y: Floats, fill: Any) -> Floats:
+    missing = np.isnan(sizes)
+    if isinstance(fill, str):
+        chosen("fill", fill, ("error", "nearest"))
+        if fill == "error" or not missing.any():
+            return sizes
+        from scipy.spatial import cKDTree
+
+        centres = np.stack(np.meshgrid(x, y), axis=-1)
+        _, nearest = cKDTree(centres[~missing]).query(centres[missing])
+        values = sizes[~missing][nearest]
+    else:
+        values = positive("fill", fill)
+    out: Floats = sizes.copy()
+    out[missing] = values
+    return out
+
+
+def _cell(edges: Floats, where: Floats) -> NDArray[np.intp]:
+    """The cells that coordinates are in; beyond the borders, the outermost."""
+    return np.clip(np.searchsorted(edges, where, side="right") - 1, 0, len(edges) - 2)
+
+
+def _between(centres: Floats, where: Floats) -> tuple[Any, Any, Floats]:
+    """The centres before and after, and the share of the way from one to the other."""
+    last = len(centres) - 1
+    before = np.clip(np.searchsorted(centres, where, side="right") - 1, 0, max(last - 1, 0))
+    after = np.minimum(before + 1, last)
+    gap = np.where(after > before, centres[after] - centres[before], 1)
+    return before, after, np.clip((where - centres[before]) / gap, 0, 1)

@@ -1,0 +1,226 @@
+"""Rasters: which way up they are, what is between cells and beyond them, and cells without data."""
+
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from scipy.interpolate import RegularGridInterpolator
+
+from metrics import MetricError, Raster, tensor
+
+#: Rows from the top, as on paper.
+TABLE = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
+EXTENT = (10, 13, 0, 2)
+
+
+def sizes(field, points):
+    return tensor.sizes(field(points))[:, 0]
+
+
+def test_row_0_is_where_it_is_said_to_be():
+    corners = [[10.5, 1.5], [12.5, 1.5], [10.5, 0.5], [12.5, 0.5]]
+    upper = Raster(TABLE, EXTENT, origin="upper")
+    lower = Raster(TABLE[::-1], EXTENT, origin="lower")
+    falling = Raster(TABLE, x=[10.5, 11.5, 12.5], y=[1.5, 0.5])
+    rising = Raster(TABLE[::-1], x=[10.5, 11.5, 12.5], y=[0.5, 1.5])
+    mirrored = Raster(TABLE[:, ::-1], x=[12.5, 11.5, 10.5], y=[1.5, 0.5])
+    for field in (upper, lower, falling, rising, mirrored):
+        np.testing.assert_allclose(sizes(field, corners), [1, 3, 4, 6])
+
+
+def test_linear_and_nearest():
+    points = [[11.0, 1.5], [11.5, 1.0], [11.4, 0.9], [10.0, 2.0], [12.9, 0.1]]
+    linear = Raster(TABLE, EXTENT, origin="upper")
+    np.testing.assert_allclose(sizes(linear, points), [1.5, 3.5, 3.7, 1, 6])
+    nearest = Raster(TABLE, EXTENT, origin="upper", interpolation="nearest")
+    np.testing.assert_allclose(sizes(nearest, points[2:]), [5, 1, 6])
+
+
+@given(
+    hnp.arrays(float, st.tuples(st.integers(2, 6), st.integers(2, 6)), elements=st.floats(0.1, 9)),
+    st.integers(0, 2**32 - 1),
+)
+@settings(max_examples=40, deadline=None)
+def test_bilinear_as_by_scipy(values, seed):
+    rng = np.random.default_rng(seed)
+    rows, columns = values.shape
+    y, x = np.cumsum(rng.uniform(0.1, 2, rows)), np.cumsum(rng.uniform(0.1, 2, columns))
+    points = rng.uniform([x[0], y[0]], [x[-1], y[-1]], (50, 2))
+    wanted = RegularGridInterpolator((y, x), values)(points[:, ::-1])
+    np.testing.assert_allclose(sizes(Raster(values, x=x, y=y), points), wanted, rtol=1e-9)
+
+
+def test_outside():
+    field = Raster(TABLE, EXTENT, origin="upper")
+    np.testing.assert_allclose(sizes(field, [[-5.0, 9.0], [99.0, 0.5]]), [1, 6])
+    strict = Raster(TABLE, EXTENT, origin="upper", outside="error")
+    np.testing.assert_allclose(sizes(strict, [[10.0, 0.0], [13 + 1e-12, 2.0]]), [4, 3])
+    with pytest.raises(MetricError, match=r"point 1 \(13.1, 1.0\) is outside .*\[10, 13\] x \[0,"):
+        strict([[11.0, 1.0], [13.1, 1.0]])
+
+
+def test_no_data():
+    table = TABLE.copy()
+    table[0, 0] = -9999
+    here = [[10.6, 1.5]]
+    field = Raster(table, EXTENT, origin="upper", no_data=-9999)
+    with pytest.raises(MetricError, match=r'no data at point 0 \(10.6, 1.5\).*fill="nearest"'):
+        field(here)
+    np.testing.assert_allclose(sizes(field, [[11.5, 1.5], [10.5, 0.5]]), [2, 4])  # not needed there
+    nearest = Raster(table, EXTENT, origin="upper", no_data=-9999, fill="nearest")
+    assert sizes(nearest, here)[0] in (pytest.approx(2), pytest.approx(4 * 0.9 + 0.2))
+    number = Raster(table, EXTENT, origin="upper", no_data=-9999, fill=0.5)
+    np.testing.assert_allclose(sizes(number, here), 0.9 * 0.5 + 0.1 * 2)
+
+
+def test_nan_masked_and_single_precision_are_no_data_too():
+    marker = -3.4028234663852886e38
+    for table, options in (
+        (np.where(TABLE == 1, np.nan, TABLE), {}),
+        (np.ma.masked_equal(TABLE, 1), {}),
+        (np.where(TABLE == 1, marker, TABLE).astype(np.float32), {"no_data": marker}),
+        (np.where(TABLE == 1, 255, TABLE).astype(np.uint8), {"no_data": 255.0}),
+        (TABLE.astype(np.uint8), {"no_data": 1}),
+    ):
+        field = Raster(table, EXTENT, origin="upper", fill=7, **options)
+        np.testing.assert_allclose(sizes(field, [[10.5, 1.5], [11.5, 1.5]]), [7, 2])
+
+
+def test_one_row_one_column_one_cell():
+    np.testing.assert_allclose(
+        sizes(Raster([[1.0, 3.0]], (0, 2, 0, 1), origin="upper"), [[1, 0.2]]), 2
+    )
+    np.testing.assert_allclose(
+        sizes(Raster([[1.0], [3.0]], (0, 1, 0, 2), origin="lower"), [[0.3, 1]]), 2
+    )
+    np.testing.assert_allclose(sizes(Raster([[5]], (0, 1, 0, 1), origin="lower"), [[9, 9]]), 5)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"origin": None}, 'give origin="upper" if row 0'),
+        ({"origin": "top"}, "origin must be one of 'upper', 'lower', not 'top'"),
+        ({"extent": None, "origin": None}, r"extent=\(x0, x1, y0, y1\), or x and y"),
+        ({"extent": (0, 1, 2)}, "extent must be"),
+        ({"extent": (0, 1, 5, 2)}, "y0 < y1"),
+        ({"extent": (0, 1, 2, np.nan)}, "extent must be finite"),
+        ({"x": [1, 2, 3], "y": [1, 2]}, "not both"),
+        ({"extent": None, "x": [1, 2, 3], "y": [1, 2]}, "origin goes with extent"),
+        ({"extent": None, "origin": None, "x": [1, 2], "y": [1, 2]}, r"x must have the shape \(3,"),
+        (
+            {"extent": None, "origin": None, "x": [1, 3, 2], "y": [1, 2]},
+            r"x\[2\] = 2.0 follows 3.0",
+        ),
+        ({"interpolation": "cubic"}, "interpolation must be"),
+        ({"outside": "nan"}, "outside must be"),
+        ({"fill": "zero"}, "fill must be"),
+        ({"fill": -1}, "fill must be positive"),
+        ({"values": TABLE - 2}, "row 0, column 0 is not a size: -1.0; .*no_data"),
+        ({"values": np.where(TABLE == 6, np.inf, TABLE)}, "row 1, column 2 is not a size: inf"),
+        ({"values": np.full((2, 2), np.nan)}, "no cell of the raster has data"),
+        ({"values": np.ones(3)}, r"\(rows, columns\), not \(3,\)"),
+        ({"values": [["a"]]}, "real numbers"),
+    ],
+)
+def test_refused(arguments, message):
+    good = {"values": TABLE, "extent": EXTENT, "origin": "upper"}
+    with pytest.raises(MetricError, match=message):
+        Raster(**(good | arguments))
+
+
+# --- xarray and rasterio, by what they look like ------------------------------------------------
+
+
+def data_array(values, dims, **coords):
+    coordinates = {name: SimpleNamespace(values=np.asarray(c)) for name, c in coords.items()}
+    return SimpleNamespace(values=values, dims=dims, coords=coordinates, attrs={"_FillValue": 5})
+
+
+def test_a_data_array_brings_its_coordinates_in_either_order():
+    x, y = [10.5, 11.5, 12.5], [1.5, 0.5]
+    for data in (
+        data_array(TABLE, ("y", "x"), x=x, y=y),
+        data_array(TABLE.T, ("lon", "lat"), lon=x, lat=y),
+    ):
+        field = Raster(data, fill=50)
+        np.testing.assert_allclose(sizes(field, [[10.5, 1.5], [11.5, 0.5]]), [1, 50])
+    with pytest.raises(MetricError, match=r"dimensions \('band', 'x'\).*longitude"):
+        Raster(data_array(TABLE, ("band", "x"), x=x))
+    with pytest.raises(MetricError, match="neither extent"):
+        Raster(data, EXTENT)
+
+
+def test_without_rasterio(monkeypatch):
+    monkeypatch.setitem(sys.modules, "rasterio", None)
+    with pytest.raises(
+        MetricError, match=r"size.tif cannot be read without rasterio: .*pip install"
+    ):
+        Raster.read("size.tif")
+
+
+class FakeFile:
+    """What rasterio.open gives: row 0 at the top if e < 0."""
+
+    nodata = 5.0
+
+    def __init__(self, a, b, c, d, e, f, table=TABLE):
+        self.transform = SimpleNamespace(a=a, b=b, c=c, d=d, e=e, f=f)
+        self.table = table
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def read(self, band):
+        if band != 1:
+            raise IndexError(f"band index {band} out of range")
+        return self.table
+
+
+@pytest.mark.parametrize(
+    "file",
+    [
+        FakeFile(1, 0, 10, 0, -1, 2),
+        FakeFile(1, 0, 10, 0, 1, 0, TABLE[::-1]),
+        FakeFile(-1, 0, 13, 0, -1, 2, TABLE[:, ::-1]),
+    ],
+)
+def test_read_any_way_up(monkeypatch, file):
+    errors = SimpleNamespace(RasterioError=OSError)
+    monkeypatch.setitem(
+        sys.modules, "rasterio", SimpleNamespace(open=lambda path: file, errors=errors)
+    )
+    field = Raster.read("size.tif", fill=50)
+    points = [[10.5, 1.5], [12.5, 1.5], [10.5, 0.5], [11.5, 0.5]]
+    np.testing.assert_allclose(sizes(field, points), [1, 3, 4, 50])
+    with pytest.raises(MetricError, match="band index 2"):
+        Raster.read("size.tif", 2)
+    file.transform.b = 0.1
+    with pytest.raises(MetricError, match="rotated"):
+        Raster.read("size.tif")
+
+
+def test_read_a_geotiff(tmp_path):
+    rasterio = pytest.importorskip("rasterio")
+    for name, transform, table in (
+        ("up.tif", rasterio.Affine(1, 0, 10, 0, -1, 2), TABLE),
+        ("row.tif", rasterio.Affine(1, 0, 10, 0, -2, 2), TABLE[:1]),
+    ):
+        options = {"driver": "GTiff", "count": 1, "dtype": "float32", "nodata": -1}
+        rows, columns = table.shape
+        path = tmp_path / name
+        with rasterio.open(
+            path, "w", height=rows, width=columns, transform=transform, **options
+        ) as file:
+            file.write(table.astype(np.float32), 1)
+        field = Raster.read(path)
+        np.testing.assert_allclose(sizes(field, [[10.5, 1.5], [12.5, 1.5]]), [1, 3])
+    with pytest.raises(MetricError, match=r"none.tif cannot be read"):
+        Raster.read(tmp_path / "none.tif")

@@ -1,0 +1,183 @@
+"""Control spaces from files."""
+
+import meshio
+import numpy as np
+import pytest
+
+import metrics
+from metrics import MetricError, tensor
+
+POINTS = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
+TRIANGLES = np.array([[0, 1, 2], [0, 3, 2]])  # the second is clockwise
+SIZES = np.array([0.1, 0.2, 0.3, 0.4])
+TENSORS = np.array([[100, 1, 4], [50, 0, 5], [10, -2, 6], [7, 0, 7.0]])
+
+MESH = """MeshVersionFormatted 2  # a comment
+Dimension 2
+Vertices
+4
+0 0 1
+1 0 1
+1 1 1
+0 1 1
+Edges 1  1 2 5
+Triangles 2
+1 2 3 0
+1 4 3 0
+hVertices 4  1 1 1 1
+End
+"""
+
+
+def rows(values):
+    return "\n".join(" ".join(map(str, row)) for row in np.atleast_2d(values.T).T)
+
+
+def sol(values, kind, dimension=2):
+    return (
+        f"MeshVersionFormatted 2\nDimension {dimension}\nSolAtVertices\n{len(values)}\n1 {kind}\n"
+        f"{rows(values)}\nEnd\n"
+    )
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "a.mesh").write_text(MESH)
+    return tmp_path
+
+
+def assert_is(field, values):
+    np.testing.assert_allclose(field(POINTS), tensor.pack(values), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "values"),
+    [
+        ("a.sol", sol(SIZES, 1), SIZES),
+        ("a.sol", sol(TENSORS, 3), TENSORS),
+        ("a.sol", sol(np.insert(TENSORS, [3, 3, 3], 0, axis=1), 3, 3), TENSORS),
+        ("a.mtr", "4 1\n" + rows(SIZES), SIZES),
+        ("a.mtr", "4 3\n" + rows(TENSORS), TENSORS),
+    ],
+)
+def test_medit_and_bamg(folder, name, text, values):
+    (folder / name).write_text(text)
+    assert_is(metrics.read(folder / "a.mesh"), values)
+    assert_is(metrics.read(folder / name), values)
+    (folder / name).rename(folder / ("b" + name[1:]))
+    assert_is(metrics.read(folder / "a.mesh", field=folder / ("b" + name[1:])), values)
+
+
+def as_nine(tensors):
+    out = np.zeros((len(tensors), 3, 3))
+    out[:, :2, :2] = tensor.unpack(tensors)
+    return out.reshape(-1, 9)
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".msh"])
+@pytest.mark.parametrize(
+    ("values", "wanted"),
+    [(SIZES, SIZES), (TENSORS, TENSORS), (as_nine(TENSORS), TENSORS)],
+)
+def test_through_meshio(tmp_path, suffix, values, wanted):
+    path = tmp_path / ("a" + suffix)
+    spatial = np.insert(POINTS, 2, 0, axis=1)
+    options = {"file_format": "gmsh22", "binary": True} if suffix == ".msh" else {}
+    data = {"metric": values, "other": 2 * SIZES}
+    meshio.Mesh(spatial, {"triangle": TRIANGLES}, data).write(path, **options)
+    assert_is(metrics.read(path), wanted)
+    assert_is(metrics.read(path, "other"), 2 * SIZES)
+    with pytest.raises(MetricError, match=r"no point data 'size'; it has 'metric', 'other'"):
+        metrics.read(path, "size")
+
+
+def test_the_only_point_data_needs_no_name(tmp_path):
+    path = tmp_path / "a.vtu"
+    meshio.Mesh(np.insert(POINTS, 2, 0, axis=1), {"triangle": TRIANGLES}, {"h": SIZES}).write(path)
+    assert_is(metrics.read(path), SIZES)
+    two = {"h": SIZES, "k": SIZES}
+    meshio.Mesh(np.insert(POINTS, 2, 0, axis=1), {"triangle": TRIANGLES}, two).write(path)
+    with pytest.raises(MetricError, match=r"choose one .* with field=...: 'h', 'k'"):
+        metrics.read(path)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "options"), [(".vtu", {}), (".msh", {"version": "2.2"}), (".mesh", {})]
+)
+def test_what_adaptmesh_writes(tmp_path, suffix, options):
+    adaptmesh = pytest.importorskip("adaptmesh")
+    mesh = adaptmesh.generate(adaptmesh.Domain.rectangle(0, 0, 1, 1), 0.5)
+    values = tensor.pack(0.1 + mesh.points[:, 0]) * [1, 0.5, 3] + [0, 0.2, 0]
+    path = tmp_path / ("a" + suffix)
+    adaptmesh.write(path, mesh, metric=values, **options)
+    np.testing.assert_allclose(metrics.read(path)(mesh.points), values, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        ("a.sol", sol(SIZES[:3], 1), "has 3 values, the mesh .*a.mesh has 4 vertices"),
+        ("a.sol", sol(TENSORS[:, :2], 2), r"types \[2\]: one is wanted"),
+        ("a.sol", sol(SIZES, 1).replace("SolAtVertices", "SolAtEdges"), "has no SolAtVertices"),
+        ("a.sol", sol(SIZES, 1).replace("0.4", ""), "could not convert|ends within"),
+        ("a.sol", sol(-SIZES, 1), r"a.sol: the value at point 0 \(0.0, 0.0\) is not positive"),
+        ("a.sol", sol(SIZES, 1, dimension=4), "dimension is 2 or 3, not 4"),
+        ("a.mtr", "4 2\n" + rows(TENSORS[:, :2]), "rows of 1 size or 3 metric entries"),
+        ("a.mtr", "4 1\n0.1 0.2 0.3", "ends within the values: 4 numbers are wanted, 3 left"),
+        ("a.mtr", "4.5 1", "whole number"),
+        ("a.mtr", "", "ends within"),
+    ],
+)
+def test_damaged_values(folder, name, text, message):
+    (folder / name).write_text(text)
+    with pytest.raises(MetricError, match=message):
+        metrics.read(folder / name)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (MESH.replace("Triangles 2", "Quadrilaterals 2"), "has no Triangles"),
+        (MESH.replace("1 2 3 0", "1 2 9 0"), "a.mesh: triangle 0 .* out of range"),
+        (MESH.replace("1 2 3 0", "1 2 0 0"), "out of range"),
+        (MESH.replace("1 2 3 0", "1 2 1 0"), "triangle 0 .* has no area"),
+        (MESH.replace("1 0 1", "1 nan 1"), "point 1 is not finite"),
+        (MESH[:60], "ends within Vertices|has no"),
+        ("", "has no Vertices"),
+    ],
+)
+def test_damaged_mesh(tmp_path, text, message):
+    (tmp_path / "a.mesh").write_text(text)
+    (tmp_path / "a.sol").write_text(sol(SIZES, 1))
+    with pytest.raises(MetricError, match=message):
+        metrics.read(tmp_path / "a.mesh")
+
+
+def test_files_that_are_missing_or_of_another_kind(folder):
+    with pytest.raises(MetricError, match=r"neither a.sol nor a.mtr beside"):
+        metrics.read(folder / "a.mesh")
+    with pytest.raises(MetricError, match=r"none.mesh cannot be read|beside"):
+        metrics.read(folder / "none.mesh")
+    with pytest.raises(MetricError, match=r"none.vtu cannot be read by meshio"):
+        metrics.read(folder / "none.vtu")
+    with pytest.raises(MetricError, match=r"must be .mesh, .sol, .mtr, .vtu or .msh, not '.stl'"):
+        metrics.read(folder / "a.stl")
+    with pytest.raises(MetricError, match=r"adaptmesh.read_sol"):
+        metrics.read(folder / "a.meshb")
+    (folder / "bad.vtu").write_text("<VTKFile")
+    with pytest.raises(MetricError, match=r"bad.vtu cannot be read"):
+        metrics.read(folder / "bad.vtu")
+    (folder / "bad.msh").write_bytes(b"\0\1\2")
+    with pytest.raises(MetricError, match=r"bad.msh cannot be read"):
+        metrics.read(folder / "bad.msh")
+    (folder / "a.sol").write_text(sol(SIZES, 1))
+    with pytest.raises(MetricError, match="has the values itself"):
+        metrics.read(folder / "a.sol", field="x")
+
+
+def test_a_mesh_that_is_not_flat(tmp_path):
+    path = tmp_path / "a.vtu"
+    bent = np.insert(POINTS, 2, [0, 0, 0.5, 0], axis=1)
+    meshio.Mesh(bent, {"triangle": TRIANGLES}, {"h": SIZES}).write(path)
+    with pytest.raises(MetricError, match=r"vertex 2 is not in the plane z = 0: \[1.0, 1.0, 0.5\]"):
+        metrics.read(path)
