@@ -1,60 +1,27 @@
 // The module metrics._core: arrays in, arrays out, without the interpreter lock.
 #include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 #include "metrics/core/background.hpp"
+#include "metrics/core/bindings.hpp"
 #include "metrics/core/tensor.hpp"
 
-namespace nb = nanobind;
 using namespace nb::literals;
-using metrics::Index;
 using metrics::Tensor;
 
 namespace {
-
-using Values = nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
-using Points = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
-using Tensors = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-using Matrices = nb::ndarray<const double, nb::shape<-1, 2, 2>, nb::c_contig, nb::device::cpu>;
-using Triangles = nb::ndarray<const Index, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-using Indices = nb::ndarray<const Index, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
-
-// A numpy array in the making: `data` is filled without the lock, `numpy` hands it over.
-template <typename T>
-struct Result {
-    std::size_t rows, columns;  // columns 0: a one-dimensional array
-    T* data;
-    nb::capsule owner;
-
-    explicit Result(std::size_t rows, std::size_t columns = 0)
-        : rows(rows),
-          columns(columns),
-          data(new T[rows * (columns ? columns : 1)]),
-          owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); }) {}
-
-    nb::object numpy() const {
-        const std::size_t shape[2] = {rows, columns};
-        return nb::cast(nb::ndarray<nb::numpy, T>(data, columns ? 2 : 1, shape, owner));
-    }
-};
 
 Tensor load(const double* p) {
     return {p[0], p[1], p[2]};
 }
 void store(double* p, Tensor t) {
     p[0] = t.a, p[1] = t.b, p[2] = t.c;
-}
-
-void require(bool condition, const char* message) {
-    if (!condition) throw std::invalid_argument(message);
 }
 
 // Fills a packed array with make(i), and finds the first i that is not accepted (-1: all are).
@@ -140,6 +107,36 @@ nb::object combine(Tensors s, Tensors t, Function function) {
         }
     }
     return out.numpy();
+}
+
+nb::object absolute(Tensors tensors, Values floors) {
+    require(tensors.shape(0) == floors.shape(0), "one floor for each tensor is needed");
+    Result<double> out(tensors.shape(0), 3);
+    {
+        nb::gil_scoped_release release;
+        const double *in = tensors.data(), *floor = floors.data();
+        for (std::size_t i = 0; i < out.rows; ++i) {
+            store(out.data + 3 * i, metrics::absolute(load(in + 3 * i), floor[i]));
+        }
+    }
+    return out.numpy();
+}
+
+std::pair<nb::object, nb::object> reduce(Tensors s, Tensors t) {
+    require(s.shape(0) == t.shape(0), "as many tensors are needed on both sides");
+    Result<double> values(s.shape(0), 2), vectors(s.shape(0), 4);
+    {
+        nb::gil_scoped_release release;
+        for (std::size_t i = 0; i < values.rows; ++i) {
+            const metrics::Reduction r(load(s.data() + 3 * i), load(t.data() + 3 * i));
+            const metrics::Direction low = r.basis_low(), high = r.basis_high();
+            double *value = values.data + 2 * i, *vector = vectors.data + 4 * i;
+            value[0] = r.low, value[1] = r.high;
+            vector[0] = low.x, vector[1] = high.x;
+            vector[2] = low.y, vector[3] = high.y;
+        }
+    }
+    return {values.numpy(), vectors.numpy()};
 }
 
 nb::object lengths(Tensors s, Tensors t, Points edges) {
@@ -231,14 +228,19 @@ NB_MODULE(_core, m) {
         "tensors"_a, "exponent"_a);
     m.def(
         "limited",
-        [](Tensors t, double low, double high) {
-            return map_tensors(t, [=](Tensor s) { return metrics::limited(s, low, high); });
+        [](Tensors t, double low, double high, double ratio) {
+            return map_tensors(t, [=](Tensor s) { return metrics::limited(s, low, high, ratio); });
         },
-        "tensors"_a, "low"_a, "high"_a);
+        "tensors"_a, "low"_a, "high"_a, "ratio"_a,
+        "Eigenvalues brought into [low, high], then the smaller to at least the larger / ratio.");
+    m.def("absolute", &absolute, "tensors"_a, "floors"_a);
     m.def("det", &dets, "tensors"_a);
     m.def("spectra", &spectra, "tensors"_a,
           "Eigenvalues (n, 2) ascending, unit eigenvector (n, 2) of the larger.");
     m.def("intersect", [](Tensors s, Tensors t) { return combine(s, t, metrics::intersect); });
+    m.def("unite", [](Tensors s, Tensors t) { return combine(s, t, metrics::unite); });
+    m.def("reduce", &reduce, "first"_a, "second"_a,
+          "Eigenvalues (n, 2) of second relative to first, ascending; basis (n, 4), row by row.");
     m.def("geometric_mean",
           [](Tensors s, Tensors t) { return combine(s, t, metrics::geometric_mean); });
     m.def("lengths", &lengths, "at_start"_a, "at_end"_a, "edges"_a);
@@ -248,4 +250,6 @@ NB_MODULE(_core, m) {
         .def_prop_ro("diagonal", &metrics::Background::diagonal)
         .def("evaluate", &evaluate, "points"_a, "hints"_a = nb::none(),
              "Metrics (n, 3), triangles (n,), distances from the mesh (n,).");
+
+    bind_nodal(m);
 }
