@@ -5,6 +5,8 @@ from .background import Background
 from .control import ControlSpace, Metric, Uniform, as_control_space
 from .errors import AdaptmeshError, MetricError
 from .expression import Expression
+from .gradation import graded
+from .implied import implied_metric, triangle_metrics
 from .measure import (
     Complexity,
     complexity,
@@ -13,6 +15,18 @@ from .measure import (
     metric_areas,
     qualities,
 )
+from .nodal import (
+    efficiency_index,
+    h_shocks,
+    nodal_areas,
+    nodal_complexity,
+    nodal_lengths,
+    nodal_qualities,
+    predicted_vertices,
+)
+from .normalise import Limits, combined, interpolation_error, lp_metric, normalised
+from .recovery import absolute, gradients, hessians
+from .solution import metric_from_solution
 
 __all__ = [
     "AdaptmeshError",
@@ -20,14 +34,33 @@ __all__ = [
     "Complexity",
     "ControlSpace",
     "Expression",
+    "Limits",
     "Metric",
     "MetricError",
     "Uniform",
+    "absolute",
     "as_control_space",
+    "combined",
     "complexity",
     "edge_lengths",
+    "efficiency_index",
+    "graded",
+    "gradients",
+    "h_shocks",
+    "hessians",
+    "implied_metric",
+    "interpolation_error",
+    "lp_metric",
     "mesh_edges",
     "metric_areas",
+    "metric_from_solution",
+    "nodal_areas",
+    "nodal_complexity",
+    "nodal_lengths",
+    "nodal_qualities",
+    "normalised",
+    "predicted_vertices",
     "qualities",
     "tensor",
+    "triangle_metrics",
 ]

@@ -40,8 +40,10 @@ def triangle_metrics(points: ArrayLike, triangles: ArrayLike) -> Floats:
 def implied_metric(points: ArrayLike, triangles: ArrayLike) -> Floats:
     """The metric at the vertices, packed (n, 3), for which a mesh is as nearly unit as it can be.
 
-    At each vertex the log-Euclidean mean of `triangle_metrics` around it, weighted by area.
-    Meshing for it again gives about as many triangles; for four times it, four times as many.
+    At each vertex the log-Euclidean mean of `triangle_metrics` around it, all with the same weight:
+    each has the same area in its own metric. So the complexity is that of the mesh, and meshing for
+    it again gives about as many triangles; for four times it, four times as many. (Weighted by area
+    in the plane, as some do, the large triangles beside small ones would make it too coarse.)
 
     Raises
     ------
@@ -51,14 +53,11 @@ def implied_metric(points: ArrayLike, triangles: ArrayLike) -> Floats:
     p = as_points(points)
     t = as_triangles(triangles, len(p))
     logs = tensor.log(triangle_metrics(p, t))
-    corners = p[t]
-    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    areas = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-    owners, weights = t.ravel(), np.repeat(areas, 3)
-    total = np.bincount(owners, weights, len(p))
-    if (total == 0).any():
-        i = int(np.argmin(total))
+    owners = t.ravel()
+    count = np.bincount(owners, minlength=len(p))
+    if (count == 0).any():
+        i = int(np.argmin(count))
         x, y = p[i].tolist()
         raise MetricError(f"point {i} ({x!r}, {y!r}) is in no triangle; drop such points")
-    sums = [np.bincount(owners, weights * np.repeat(logs[:, k], 3), len(p)) for k in range(3)]
-    return tensor.exp(np.stack(sums, axis=1) / total[:, None])
+    sums = [np.bincount(owners, np.repeat(logs[:, k], 3), len(p)) for k in range(3)]
+    return tensor.exp(np.stack(sums, axis=1) / count[:, None])

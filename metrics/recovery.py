@@ -104,12 +104,12 @@ def absolute(hessians: ArrayLike, floor: ArrayLike = 0.0) -> Floats:
     floor : float or (n,) array_like, optional
         Eigenvalues are raised to it.
     """
-    raw = as_numbers(hessians, "Hessians")
+    raw = np.asarray(as_numbers(hessians, "Hessians"), np.float64)
     if raw.ndim == 3 and raw.shape[1:] == (2, 2):
         raw = np.stack([raw[:, 0, 0], 0.5 * (raw[:, 0, 1] + raw[:, 1, 0]), raw[:, 1, 1]], axis=1)
     if raw.ndim != 2 or raw.shape[1] != 3:
         raise MetricError(f"Hessians must have the shape (n, 3) or (n, 2, 2), not {raw.shape}")
-    tensors = np.ascontiguousarray(raw, np.float64)
+    tensors = np.ascontiguousarray(raw)
     if not np.isfinite(tensors).all():
         i = int(np.argmin(np.isfinite(tensors).all(axis=1)))
         raise MetricError(f"the Hessian at item {i} is not finite: {tensors[i].tolist()}")
@@ -224,4 +224,5 @@ class _Lumped:
 
     def _gathered(self, parts: Floats) -> Floats:
         """Sums at vertices (n,) of parts at the corners of triangles (m, 3)."""
-        return np.bincount(self.triangles.ravel(), parts.ravel())
+        out: Floats = np.bincount(self.triangles.ravel(), parts.ravel()).astype(np.float64)
+        return out
