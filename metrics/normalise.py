@@ -302,5 +302,4 @@ def _vertex_areas(points: Floats, triangles: Ints) -> Floats:
     corners = points[triangles]
     u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     thirds = (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 6
-    out: Floats = np.bincount(triangles.ravel(), np.repeat(thirds, 3), len(points))
-    return out
+    return np.bincount(triangles.ravel(), np.repeat(thirds, 3), len(points)).astype(np.float64)

@@ -39,6 +39,7 @@ class Adjacency {
         const Index *begin_, *end_;
         const Index* begin() const { return begin_; }
         const Index* end() const { return end_; }
+        std::ptrdiff_t size() const { return end_ - begin_; }
     };
 
     Range of(Index vertex) const {

@@ -49,7 +49,8 @@ class QuadraticFit {
 
   private:
     static constexpr std::size_t COEFFICIENTS = 6;
-    static constexpr std::size_t LARGEST = 600;  // stencils do not grow beyond
+    static constexpr std::size_t LARGEST = 600;        // stencils are not given more rings
+    static constexpr std::ptrdiff_t LARGEST_FAN = 64;  // of many neighbours every k-th is enough
     // The smallest diagonal entry of the triangle of columns of length 1: enough, and too little.
     static constexpr double WELL = 0.08, BARELY = 1e-6;
 
@@ -57,7 +58,10 @@ class QuadraticFit {
     bool add_ring(Index vertex, std::size_t& ring) {
         const std::size_t end = stencil_.size();
         for (; ring < end; ++ring) {
-            for (const Index w : mesh_.of(stencil_[ring])) {
+            const Adjacency::Range fan = mesh_.of(stencil_[ring]);
+            const std::ptrdiff_t stride = 1 + fan.size() / LARGEST_FAN;
+            for (std::ptrdiff_t i = 0; i < fan.size(); i += stride) {
+                const Index w = fan.begin()[i];
                 if (seen_[w] == vertex) continue;
                 seen_[w] = vertex;
                 stencil_.push_back(w);
