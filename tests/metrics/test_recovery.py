@@ -192,9 +192,9 @@ def test_what_cannot_be_used_is_refused():
     u = wave(points)
     with pytest.raises(MetricError, match=r"shape \(16,\)"):
         hessians(points, triangles, u[:3])
-    with pytest.raises(MetricError, match="value at point 2 .* not finite: nan"):
+    with pytest.raises(MetricError, match=r"value at point 2 .* not finite: nan"):
         gradients(points, triangles, np.where(np.arange(16) == 2, np.nan, u))
-    with pytest.raises(MetricError, match="triangle 0 .* not counter-clockwise"):
+    with pytest.raises(MetricError, match=r"triangle 0 .* not counter-clockwise"):
         hessians(points, triangles[:, ::-1], u)
     with pytest.raises(MetricError, match=r"point 16 \(9.0, 9.0\) is in no triangle"):
         hessians(np.r_[points, [[9.0, 9.0]]], triangles, np.r_[u, 1])

@@ -374,7 +374,7 @@ def test_intersection_is_the_largest_ellipse_inside_and_union_the_smallest_aroun
 def test_simultaneous_reduction_makes_identity_and_diagonal(condition):
     s, t = random_tensors(200, condition, seed=12), random_tensors(200, condition, seed=13)
     values, p = tensor.simultaneous_reduction(s, t)
-    assert (0 < values[:, 0]).all() and (values[:, 0] <= values[:, 1]).all()
+    assert (values[:, 0] > 0).all() and (values[:, 0] <= values[:, 1]).all()
     for k in range(200):
         # Backward: what P makes of both is right up to a small change of their entries.
         inverse = np.linalg.inv(p[k])
