@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from meshes import from_axes, irregular_square
+from reference.meshes import from_axes, irregular_square
 
 from metrics import (
     Background,

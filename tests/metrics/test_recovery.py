@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from meshes import delaunay, irregular_square, on_border, regular_square
+from reference.meshes import delaunay, irregular_square, on_border, regular_square
 
 from metrics import MetricError, absolute, gradients, hessians, tensor
 

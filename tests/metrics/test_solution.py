@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from meshes import irregular_square
+from reference.meshes import irregular_square
 
 from metrics import (
     Background,

@@ -5,9 +5,9 @@ from decimal import Decimal
 import numpy as np
 import pytest
 import scipy.linalg
-import tensor_oracle as oracle
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from reference import tensor_oracle as oracle
 
 from metrics import MetricError, tensor
 

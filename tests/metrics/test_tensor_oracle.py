@@ -9,7 +9,7 @@ from decimal import Decimal
 
 import numpy as np
 import pytest
-import tensor_oracle as oracle
+from reference import tensor_oracle as oracle
 
 from metrics import tensor
 
