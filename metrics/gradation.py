@@ -79,7 +79,7 @@ def graded(
     Engineering 43 (1998), 1143-1165: the H-shock and its correction, and growth in the metric.
 
     Alauzet: Size gradation control of anisotropic meshes. Finite Elements in Analysis and Design
-    46 (2010), 181-202: growth in space, in the metric, and the mixture.
+    46 (2010), doi:10.1016/j.finel.2009.06.028: growth in space, in the metric, and the mixture.
     """
     where = as_points(points)
     tensors = tensor.pack(metric, points=where)

@@ -85,7 +85,7 @@ def hessians(
     Journal on Scientific Computing 26 (2005), 1192-1213: the quadratic fit.
 
     Kamenski, Huang: How a nonconvergent recovered Hessian works in mesh adaptation. SIAM Journal
-    on Numerical Analysis 52 (2014), 1692-1708: these methods compared.
+    on Numerical Analysis 52 (2014), 1692-1708: why Hessians that do not converge still serve.
     """
     p, t, u = _checked(points, triangles, values, method)
     if method == "least squares":
