@@ -78,6 +78,9 @@ def h_shocks(points: ArrayLike, edges: ArrayLike, metric: Any) -> Floats:
     ends = as_indices(edges, 2, len(p), "edge")
     m = at_vertices(p, metric)
     vectors = p[ends[:, 1]] - p[ends[:, 0]]
+    if not vectors.any(axis=1).all():
+        i = int(np.argmin(vectors.any(axis=1)))
+        raise MetricError(f"edge {i} = {tuple(ends[i].tolist())} has no length")
     a, b = _length_at(m[ends[:, 0]], vectors), _length_at(m[ends[:, 1]], vectors)
     out: Floats = np.exp(np.abs(np.log(a / b)) / _logarithmic_mean(a, b))
     return out
@@ -180,16 +183,18 @@ LENGTH_RULES: dict[str, Callable[[Floats, Floats, Floats], Floats]] = {
 
 
 def _length_at(tensors: Floats, vectors: Floats) -> Floats:
-    """Lengths of vectors in one metric each."""
-    x, y = vectors.T
-    squares = tensors[:, 0] * x * x + 2 * tensors[:, 1] * x * y + tensors[:, 2] * y * y
-    out: Floats = np.sqrt(np.maximum(squares, 0))
+    """Lengths of vectors in one metric each, as sums of squares: (m11 x + m12 y)² + det y²."""
+    turned = tensors[:, 0] < tensors[:, 2]
+    largest = tensors[:, [0, 2]].max(axis=1)
+    x, y = np.where(turned, vectors[:, ::-1].T, vectors.T)
+    along = largest * x + tensors[:, 1] * y
+    out: Floats = np.sqrt((along * along + _core.det(tensors) * y * y) / largest)
     return out
 
 
 def _logarithmic_mean(a: Floats, b: Floats) -> Floats:
     """(a - b) / ln(a / b), and a where they are equal: b (e^x - 1) / x with x = ln(a / b)."""
-    x = np.log(a / b)
+    x = np.log(np.divide(a, b, out=np.ones_like(a), where=b > 0))
     near = np.abs(x) < 1e-8
     out: Floats = b * np.where(near, 1 + x / 2, np.expm1(x) / np.where(near, 1, x))
     return out

@@ -54,7 +54,7 @@ class Source {
     // Metric-space growth: all sizes grow by the same factor, 1 + l ln(beta), with l the length of
     // the edge in the metric here.
     Tensor grown(double dx, double dy) const {
-        const double growth = 1 + rule_.log_beta * std::sqrt(m_.q(dx, dy));
+        const double growth = 1 + rule_.log_beta * length(m_, dx, dy);
         return (1 / (growth * growth)) * m_;
     }
 
@@ -62,7 +62,7 @@ class Source {
     // each size h by itself, which makes an ellipse rounder with the distance.
     Tensor mixed(double dx, double dy) const {
         constexpr double share = 1.0 / 8;
-        const double in_metric = 1 + rule_.log_beta * std::sqrt(m_.q(dx, dy));
+        const double in_metric = 1 + rule_.log_beta * length(m_, dx, dy);
         const double step = rule_.log_beta * std::sqrt(dx * dx + dy * dy);
         const auto shrunk = [&](double eigenvalue) {
             const double in_space = 1 + step * std::sqrt(eigenvalue);
@@ -76,7 +76,7 @@ class Source {
     // of an edge along which sizes change geometrically, the H-shock is (a / b)^(1 / l). If it is
     // above beta, the other metric is multiplied so that it is beta.
     bool correct(Tensor& other, double dx, double dy) const {
-        const double a = std::sqrt(m_.q(dx, dy)), b = std::sqrt(other.q(dx, dy));
+        const double a = length(m_, dx, dy), b = length(other, dx, dy);
         if (!(a > b)) return false;
         const double ratio = std::log(a / b);
         const double allowed = largest_ratio(rule_.log_beta * a);

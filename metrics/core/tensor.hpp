@@ -78,6 +78,13 @@ inline double sqrt_det(Tensor t) {
     return std::sqrt(det(t));
 }
 
+// The length of (dx, dy), as a sum of squares: not lost to rounding along the thinnest ellipse.
+inline double length(Tensor t, double dx, double dy) {
+    if (t.a < t.c) return length({t.c, t.b, t.a}, dy, dx);
+    const double along = t.a * dx + t.b * dy;
+    return std::sqrt((along * along + det(t) * dy * dy) / t.a);
+}
+
 struct Direction {
     double x, y;
 };

@@ -138,3 +138,22 @@ def test_measures_refuse_what_they_cannot_measure():
             function(POINTS, [[0, 99]], TURNING)
         with pytest.raises(MetricError, match=r"shape \(3,\)"):
             function(POINTS, EDGES, [1.0, 2.0, 3.0])
+
+
+@pytest.mark.parametrize("rule", ["quadrature", "simpson", "logarithmic"])
+def test_an_edge_without_length(rule):
+    points = [[1.0, 2.0], [1.0, 2.0]]
+    assert nodal_lengths(points, [[0, 1]], [0.1, 0.2], rule) == 0
+    with pytest.raises(MetricError, match=r"edge 0 = \(0, 1\) has no length"):
+        h_shocks(points, [[0, 1]], [0.1, 0.2])
+
+
+@pytest.mark.parametrize("rule", ["quadrature", "logarithmic"])
+def test_lengths_along_the_thinnest_ellipses_are_not_lost(rule):
+    """With sizes 1e-7 and 1, the entries hold the square of the length 1 to two digits only."""
+    angle = np.linspace(0, 2 * np.pi, 200)
+    thin = from_axes(1.0, 1e-7, angle)
+    points = np.concatenate([0 * thin[:, :2], np.stack([np.cos(angle), np.sin(angle)], axis=1)])
+    k = np.arange(200)
+    got = nodal_lengths(points, np.stack([k, k + 200], 1), np.concatenate([thin, thin]), rule)
+    np.testing.assert_allclose(got, 1, atol=0.05)
