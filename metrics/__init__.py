@@ -6,6 +6,8 @@ from .control import ControlSpace, Metric, Uniform, as_control_space
 from .errors import AdaptmeshError, MetricError
 from .expression import Expression
 from .files import read
+from .gradation import graded
+from .implied import implied_metric, triangle_metrics
 from .measure import (
     Complexity,
     complexity,
@@ -14,6 +16,17 @@ from .measure import (
     metric_areas,
     qualities,
 )
+from .nodal import (
+    efficiency_index,
+    h_shocks,
+    nodal_areas,
+    nodal_complexity,
+    nodal_lengths,
+    nodal_qualities,
+    predicted_vertices,
+)
+from .normalise import Limits, combined, interpolation_error, lp_metric, normalised
+from .recovery import absolute, gradients, hessians
 from .sizes import (
     BoundaryCurvature,
     BoundaryLayer,
@@ -25,6 +38,7 @@ from .sizes import (
     Shock,
     first_height,
 )
+from .solution import metric_from_solution
 
 __all__ = [
     "AdaptmeshError",
@@ -36,6 +50,7 @@ __all__ = [
     "Distance",
     "Expression",
     "Geometry",
+    "Limits",
     "Metric",
     "MetricError",
     "Nearest",
@@ -43,13 +58,31 @@ __all__ = [
     "RegionSizes",
     "Shock",
     "Uniform",
+    "absolute",
     "as_control_space",
+    "combined",
     "complexity",
     "edge_lengths",
+    "efficiency_index",
     "first_height",
+    "graded",
+    "gradients",
+    "h_shocks",
+    "hessians",
+    "implied_metric",
+    "interpolation_error",
+    "lp_metric",
     "mesh_edges",
     "metric_areas",
+    "metric_from_solution",
+    "nodal_areas",
+    "nodal_complexity",
+    "nodal_lengths",
+    "nodal_qualities",
+    "normalised",
+    "predicted_vertices",
     "qualities",
     "read",
     "tensor",
+    "triangle_metrics",
 ]

@@ -11,6 +11,7 @@ from . import _core, tensor
 from .arrays import Floats, Ints, as_numbers, as_points, as_triangles
 from .control import ControlSpace
 from .errors import MetricError
+from .gradation import graded
 
 __all__ = ["Background"]
 
@@ -137,6 +138,16 @@ class Background(ControlSpace):
 
     def values(self, points: Floats) -> ArrayLike:
         return self.evaluate(points)[0]
+
+    @property
+    def tensors(self) -> Floats:
+        """Packed tensors (n, 3) at the vertices, a fresh array."""
+        return tensor.exp(self.logs)
+
+    def graded(self, beta: float = 1.5, law: str = "mixed") -> Background:
+        """The same background with sizes that grow no faster than `beta`: see `metrics.graded`."""
+        limited = graded(self.tensors, self.points, self.triangles, beta, law)
+        return Background(self.points, self.triangles, limited, self.outside)
 
     def __repr__(self) -> str:
         return f"<Background: {len(self.points)} points, {len(self.triangles)} triangles>"

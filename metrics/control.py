@@ -57,9 +57,14 @@ class ControlSpace(ABC):
         """The same field with every size multiplied by `factor`: 2 gives a mesh twice as coarse."""
         return Scaled(self, factor)
 
-    def limited(self, h_min: float = 0.0, h_max: float = np.inf) -> ControlSpace:
-        """The same field with every size brought into [h_min, h_max]; the axes stay."""
-        return Limited(self, h_min, h_max)
+    def limited(
+        self, h_min: float = 0.0, h_max: float = np.inf, max_anisotropy: float = np.inf
+    ) -> ControlSpace:
+        """The same field with every size brought into [h_min, h_max]; the axes stay.
+
+        Then the larger of the two sizes is lowered to `max_anisotropy` times the smaller.
+        """
+        return Limited(self, h_min, h_max, max_anisotropy)
 
 
 Metric: TypeAlias = "float | Callable[[Floats], ArrayLike] | ControlSpace"
@@ -163,14 +168,21 @@ class Scaled(ControlSpace):
 
 
 class Limited(ControlSpace):
-    """Every size of a field brought into an interval."""
+    """Every size of a field brought into an interval, and their ratio below a bound."""
 
-    def __init__(self, field: ControlSpace, h_min: float, h_max: float) -> None:
-        tensor.limit(np.empty((0, 3)), h_min, h_max)
-        self.field, self.h_min, self.h_max = field, float(h_min), float(h_max)
+    def __init__(
+        self, field: ControlSpace, h_min: float, h_max: float, max_anisotropy: float
+    ) -> None:
+        tensor.limit(np.empty((0, 3)), h_min, h_max, max_anisotropy)
+        self.field = field
+        self.h_min, self.h_max = float(h_min), float(h_max)
+        self.max_anisotropy = float(max_anisotropy)
 
     def values(self, points: Floats) -> ArrayLike:
-        return tensor.limit(self.field(points), self.h_min, self.h_max)
+        return tensor.limit(self.field(points), self.h_min, self.h_max, self.max_anisotropy)
 
     def __repr__(self) -> str:
-        return f"({self.field!r}).limited({self.h_min!r}, {self.h_max!r})"
+        limits = [repr(self.h_min), repr(self.h_max)]
+        if self.max_anisotropy < np.inf:
+            limits.append(repr(self.max_anisotropy))
+        return f"({self.field!r}).limited({', '.join(limits)})"

@@ -30,8 +30,10 @@ __all__ = [
     "mean",
     "pack",
     "power",
+    "simultaneous_reduction",
     "sizes",
     "sqrt",
+    "union",
     "unpack",
 ]
 
@@ -196,8 +198,10 @@ def geometric_mean(first: ArrayLike, second: ArrayLike) -> Floats:
 def intersect(first: ArrayLike, second: ArrayLike) -> Floats:
     """Intersections of two packed arrays, (n, 3): no step is longer than either allows.
 
-    By simultaneous reduction: in the basis where one tensor is the identity and the other
-    diagonal, the larger of each pair of eigenvalues. Commutative, but not associative.
+    The largest ellipse inside both. By simultaneous reduction: in the basis where one tensor is
+    the identity and the other diagonal, the larger of each pair of eigenvalues. Commutative, but
+    not associative. Tensors that differ by no more than rounding (4e-16 of their trace) count as
+    equal.
 
     References
     ----------
@@ -205,6 +209,37 @@ def intersect(first: ArrayLike, second: ArrayLike) -> Floats:
     maillage. INRIA report 4759 (2003).
     """
     return _core.intersect(*_pair(first, second))
+
+
+def union(first: ArrayLike, second: ArrayLike) -> Floats:
+    """Unions of two packed arrays, (n, 3): every step is as long as either allows.
+
+    The smallest ellipse around both; in the basis of `simultaneous_reduction` the smaller of each
+    pair of eigenvalues. Dual to `intersect`: the inverse of the intersection of the inverses; and
+    intersection and union add up to the sum of the two. Commutative, but not associative.
+    """
+    return _core.unite(*_pair(first, second))
+
+
+def simultaneous_reduction(first: ArrayLike, second: ArrayLike) -> tuple[Floats, Floats]:
+    """The basis in which the first tensor is the identity and the second diagonal.
+
+    Returns
+    -------
+    values : (n, 2) array of float
+        The second relative to the first, ascending: its squared length where the first has 1.
+    vectors : (n, 2, 2) array of float
+        As by ``scipy.linalg.eigh(second, first)``: with P = ``vectors[i]``,
+        ``P.T @ first @ P`` is the identity and ``P.T @ second @ P`` is diagonal, `values`.
+
+    Examples
+    --------
+    >>> values, vectors = simultaneous_reduction([[1.0, 0.0, 4.0]], [[9.0, 0.0, 1.0]])
+    >>> values
+    array([[0.25, 9.  ]])
+    """
+    values, vectors = _core.reduce(*_pair(first, second))
+    return values, vectors.reshape(-1, 2, 2)
 
 
 def lengths(at_start: ArrayLike, at_end: ArrayLike, edges: ArrayLike) -> Floats:
@@ -231,12 +266,24 @@ def lengths(at_start: ArrayLike, at_end: ArrayLike, edges: ArrayLike) -> Floats:
     return _core.lengths(start, end, vectors)
 
 
-def limit(tensors: ArrayLike, h_min: float = 0.0, h_max: float = np.inf) -> Floats:
-    """Tensors of the same axes with both sizes brought into [h_min, h_max], packed (n, 3)."""
+def limit(
+    tensors: ArrayLike,
+    h_min: float = 0.0,
+    h_max: float = np.inf,
+    max_anisotropy: float = np.inf,
+) -> Floats:
+    """Tensors of the same axes within limits, packed (n, 3).
+
+    First both sizes are brought into [h_min, h_max], then the larger is lowered to `max_anisotropy`
+    times the smaller.
+    """
     if not 0 <= h_min <= h_max or h_max == 0:
         raise MetricError(f"0 <= h_min <= h_max and 0 < h_max are needed, not {h_min}, {h_max}")
+    if not max_anisotropy >= 1:
+        raise MetricError(f"max_anisotropy is a ratio of sizes, at least 1, not {max_anisotropy}")
     high = float(h_min) ** -2 if h_min > 0 else np.inf
-    return pack(_core.limited(pack(tensors), float(h_max) ** -2, high), what="the limited metric")
+    out = _core.limited(pack(tensors), float(h_max) ** -2, high, float(max_anisotropy) ** 2)
+    return pack(out, what="the limited metric")
 
 
 def _packed(tensors: ArrayLike) -> Floats:

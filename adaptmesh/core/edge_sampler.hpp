@@ -143,9 +143,8 @@ class EdgeSampler {
         const double halves = length(left) + length(right);
         const bool agree = std::abs(length(c) - halves) <= AGREEMENT * halves;
         const double longest = c.depth < FINE_DEPTH ? longest_chord_ : LONGEST_FINE_CHORD;
-        return {
-            left, right, halves,
-            (agree && halves <= longest) || halves <= SHORTEST_CHORD || c.depth >= DEEPEST};
+        return {left, right, halves,
+                (agree && halves <= longest) || halves <= SHORTEST_CHORD || c.depth >= DEEPEST};
     }
 
     Point point(Index edge, double t) const {
@@ -182,9 +181,9 @@ class EdgeSampler {
     double longest_edge_;
     double uncut_below_;
     std::vector<Edge> edges_;
-    std::vector<Chord> chords_;      // asked about
-    std::vector<Chord> pieces_;      // trusted
-    std::vector<Index> first_;       // of each edge, in pieces_
+    std::vector<Chord> chords_;    // asked about
+    std::vector<Chord> pieces_;    // trusted
+    std::vector<Index> first_;     // of each edge, in pieces_
     std::vector<double> lengths_;  // of what is trusted
 };
 

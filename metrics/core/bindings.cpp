@@ -109,6 +109,36 @@ nb::object combine(Tensors s, Tensors t, Function function) {
     return out.numpy();
 }
 
+nb::object absolute(Tensors tensors, Values floors) {
+    require(tensors.shape(0) == floors.shape(0), "one floor for each tensor is needed");
+    Result<double> out(tensors.shape(0), 3);
+    {
+        nb::gil_scoped_release release;
+        const double *in = tensors.data(), *floor = floors.data();
+        for (std::size_t i = 0; i < out.rows; ++i) {
+            store(out.data + 3 * i, metrics::absolute(load(in + 3 * i), floor[i]));
+        }
+    }
+    return out.numpy();
+}
+
+std::pair<nb::object, nb::object> reduce(Tensors s, Tensors t) {
+    require(s.shape(0) == t.shape(0), "as many tensors are needed on both sides");
+    Result<double> values(s.shape(0), 2), vectors(s.shape(0), 4);
+    {
+        nb::gil_scoped_release release;
+        for (std::size_t i = 0; i < values.rows; ++i) {
+            const metrics::Reduction r(load(s.data() + 3 * i), load(t.data() + 3 * i));
+            const metrics::Direction low = r.basis_low(), high = r.basis_high();
+            double *value = values.data + 2 * i, *vector = vectors.data + 4 * i;
+            value[0] = r.low, value[1] = r.high;
+            vector[0] = low.x, vector[1] = high.x;
+            vector[2] = low.y, vector[3] = high.y;
+        }
+    }
+    return {values.numpy(), vectors.numpy()};
+}
+
 nb::object lengths(Tensors s, Tensors t, Points edges) {
     require(s.shape(0) == t.shape(0) && s.shape(0) == edges.shape(0),
             "one tensor at each end of each edge is needed");
@@ -198,14 +228,19 @@ NB_MODULE(_core, m) {
         "tensors"_a, "exponent"_a);
     m.def(
         "limited",
-        [](Tensors t, double low, double high) {
-            return map_tensors(t, [=](Tensor s) { return metrics::limited(s, low, high); });
+        [](Tensors t, double low, double high, double ratio) {
+            return map_tensors(t, [=](Tensor s) { return metrics::limited(s, low, high, ratio); });
         },
-        "tensors"_a, "low"_a, "high"_a);
+        "tensors"_a, "low"_a, "high"_a, "ratio"_a,
+        "Eigenvalues brought into [low, high], then the smaller to at least the larger / ratio.");
+    m.def("absolute", &absolute, "tensors"_a, "floors"_a);
     m.def("det", &dets, "tensors"_a);
     m.def("spectra", &spectra, "tensors"_a,
           "Eigenvalues (n, 2) ascending, unit eigenvector (n, 2) of the larger.");
     m.def("intersect", [](Tensors s, Tensors t) { return combine(s, t, metrics::intersect); });
+    m.def("unite", [](Tensors s, Tensors t) { return combine(s, t, metrics::unite); });
+    m.def("reduce", &reduce, "first"_a, "second"_a,
+          "Eigenvalues (n, 2) of second relative to first, ascending; basis (n, 4), row by row.");
     m.def("geometric_mean",
           [](Tensors s, Tensors t) { return combine(s, t, metrics::geometric_mean); });
     m.def("lengths", &lengths, "at_start"_a, "at_end"_a, "edges"_a);
@@ -217,4 +252,5 @@ NB_MODULE(_core, m) {
              "Metrics (n, 3), triangles (n,), distances from the mesh (n,).");
 
     bind_segments(m);
+    bind_nodal(m);
 }

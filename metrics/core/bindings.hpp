@@ -11,6 +11,7 @@
 namespace nb = nanobind;
 
 void bind_segments(nb::module_& m);
+void bind_nodal(nb::module_& m);
 
 // Arrays as the Python side hands them over: C-contiguous, right type.
 using Index = std::int32_t;

@@ -46,13 +46,16 @@ inline double product_error(double x, double y) {
     return x2 * y2 - (((x * y - x1 * y1) - x2 * y1) - x1 * y2);
 }
 
-// The determinant of the entries as they are stored, to nearly full precision even where the two
-// products cancel.
+// u * v - x * y, to nearly full precision even where the two products cancel.
+inline double product_difference(double u, double v, double x, double y) {
+    const double first = u * v, second = x * y, difference = first - second;
+    if (std::fabs(difference) > 0.25 * std::fabs(first)) return difference;
+    return difference + (product_error(u, v) - product_error(x, y));
+}
+
+// The determinant of the entries as they are stored.
 inline double exact_det(Tensor t) {
-    const double diagonal = t.a * t.c, square = t.b * t.b;
-    const double difference = diagonal - square;
-    if (difference > 0.25 * diagonal) return difference;
-    return difference + (product_error(t.a, t.c) - product_error(t.b, t.b));
+    return product_difference(t.a, t.c, t.b, t.b);
 }
 
 // Beyond this share of its diagonal product, a determinant is nothing but the rounding of entries.
@@ -75,6 +78,17 @@ inline double sqrt_det(Tensor t) {
     return std::sqrt(det(t));
 }
 
+// The length of (dx, dy), as a sum of squares: not lost to rounding along the thinnest ellipse.
+inline double length(Tensor t, double dx, double dy) {
+    if (t.a < t.c) return length({t.c, t.b, t.a}, dy, dx);
+    const double along = t.a * dx + t.b * dy;
+    return std::sqrt((along * along + det(t) * dy * dy) / t.a);
+}
+
+struct Direction {
+    double x, y;
+};
+
 // The traceless part ((d, b), (b, -d)) has the eigenvalues -r and r, whatever the mean of the
 // diagonal; log, exp and the spectrum are functions of it.
 struct Deviator {
@@ -86,6 +100,14 @@ struct Deviator {
     // r + d and r - d, both without cancellation: their product is b^2.
     double r_plus_d() const { return d >= 0 ? r + d : b * b / (r - d); }
     double r_minus_d() const { return d <= 0 ? r - d : b * b / (r + d); }
+
+    // The unit eigenvector of the larger eigenvalue, mean + r.
+    Direction direction() const {
+        if (r == 0) return {1, 0};
+        const double x = d >= 0 ? r + d : b, y = d >= 0 ? b : r - d;
+        const double norm = std::sqrt(x * x + y * y);
+        return {x / norm, y / norm};
+    }
 };
 
 // Eigenvalues, and the unit eigenvector (x, y) of the larger one; (-y, x) is the other's.
@@ -97,10 +119,8 @@ inline Spectrum spectrum(Tensor t) {
     const Deviator dev(t);
     const double high = dev.mean + dev.r;
     if (dev.r == 0) return {high, high, 1, 0};
-    const double x = dev.d >= 0 ? dev.r + dev.d : dev.b;
-    const double y = dev.d >= 0 ? dev.b : dev.r - dev.d;
-    const double norm = std::sqrt(x * x + y * y);
-    return {det(t) / high, high, x / norm, y / norm};
+    const Direction axis = dev.direction();
+    return {det(t) / high, high, axis.x, axis.y};
 }
 
 inline Tensor from_spectrum(Spectrum s) {
@@ -113,12 +133,27 @@ inline Tensor power(Tensor t, double exponent) {
     return from_spectrum({std::pow(s.low, exponent), std::pow(s.high, exponent), s.x, s.y});
 }
 
-// The same axes with the eigenvalues brought into [low, high]; the very same tensor if they are.
-inline Tensor limited(Tensor t, double low, double high) {
+// The same axes with the eigenvalues brought into [low, high], and then the smaller one raised to
+// the larger one over `ratio`; the very same tensor if nothing is to be done.
+inline Tensor limited(Tensor t, double low, double high, double ratio) {
     const Spectrum s = spectrum(t);
-    if (low <= s.low && s.high <= high) return t;
+    if (low <= s.low && s.high <= high && s.high <= ratio * s.low) return t;
     const auto clip = [=](double value) { return std::min(std::max(value, low), high); };
-    return from_spectrum({clip(s.low), clip(s.high), s.x, s.y});
+    const double larger = clip(s.high);
+    return from_spectrum({std::max(clip(s.low), larger / ratio), larger, s.x, s.y});
+}
+
+// |H| of any symmetric H: the same axes, the eigenvalues without their signs and not below `floor`.
+inline Tensor absolute(Tensor t, double floor) {
+    const double det = exact_det(t);
+    const double sign = t.a + t.c < 0 ? -1 : 1;
+    const Deviator dev(sign * t);
+    const double high = dev.mean + dev.r;  // of both eigenvalues the larger in magnitude
+    if (high <= floor) return {floor, 0, floor};
+    const double low = std::fabs(det) / high;
+    if (det >= 0 && low >= floor) return sign * t;
+    const Direction axis = dev.direction();
+    return from_spectrum({std::max(low, floor), high, axis.x, axis.y});
 }
 
 // log M = (ln det M) / 2 I + artanh(r / mean) / r (M - mean I)
@@ -188,29 +223,74 @@ inline double length(Tensor s, Tensor t, double dx, double dy) {
     return length(s, sqrt_det(s), t, sqrt_det(t), dx, dy);
 }
 
-// The ellipse inside both unit ellipses that simultaneous reduction gives: in the basis where s is
-// the identity and t diagonal, the larger of each pair of eigenvalues.
+// Simultaneous reduction: the basis in which s is the identity and t diagonal.
 //
-// With s = L L' and N = L^-1 t L^-T = low vv' + high ww': s itself if high <= 1, t if low >= 1, and
-// otherwise L (I + (high - 1) ww') L' = s + (high - 1) (Lw)(Lw)', without forming the inverse.
-inline Tensor intersect(Tensor s, Tensor t) {
+// With s = L L' and N = L^-1 t L^-T = low vv' + high ww', the rows of the inverse basis are Lv and
+// Lw: s = (Lv)(Lv)' + (Lw)(Lw)' and t = low (Lv)(Lv)' + high (Lw)(Lw)'.
+//
+// Each entry of N has nearly full precision for the entries of s and t as stored: the first is a
+// quotient, the second a difference of products computed with their errors, and the last follows
+// from the determinant without a subtraction. L starts from the larger diagonal entry of s, so that
+// it has no entry above its diagonal ones.
+struct Reduction {
+    double low, high;
+    Direction at_low, at_high;  // Lv, Lw
+    double area;                // of the parallelogram from at_low to at_high, signed
+
+    Reduction(Tensor s, Tensor t) {
+        const bool turned = s.a < s.c;
+        if (turned) s = {s.c, s.b, s.a}, t = {t.c, t.b, t.a};
+        const double root = sqrt_det(s), det_n = det(t) / det(s);
+        const double n11 = t.a / s.a;
+        const double n12 = product_difference(s.a, t.b, s.b, t.a) / (s.a * root);
+        const Deviator dev({n11, n12, (det_n + n12 * n12) / n11});
+        high = dev.mean + dev.r;
+        low = std::min(det_n / high, high);
+        const Direction w = dev.direction();
+        const double l11 = std::sqrt(s.a), l21 = s.b / l11, l22 = root / l11;
+        at_high = {l11 * w.x, l21 * w.x + l22 * w.y};
+        at_low = {-l11 * w.y, l22 * w.x - l21 * w.y};
+        area = turned ? root : -root;
+        if (turned) at_high = {at_high.y, at_high.x}, at_low = {at_low.y, at_low.x};
+    }
+
+    // The basis itself, L^-T v and L^-T w: each has the product 1 with its own row of the inverse
+    // and 0 with the other.
+    Direction basis_low() const { return {at_high.y / area, -at_high.x / area}; }
+    Direction basis_high() const { return {-at_low.y / area, at_low.x / area}; }
+
+    // at_low at_low' k + at_high at_high' m
+    Tensor combined(double k, double m) const { return k * square(at_low) + m * square(at_high); }
+
+    static Tensor square(Direction v) { return {v.x * v.x, v.x * v.y, v.y * v.y}; }
+};
+
+// Equal but for rounding, which the reduction of a thin ellipse would magnify.
+inline bool nearly_equal(Tensor s, Tensor t) {
     const Tensor difference = t - s;
     const double blur = 0x1p-51 * (s.a + s.c);
-    if (std::fabs(difference.a) <= blur && std::fabs(difference.b) <= blur &&
-        std::fabs(difference.c) <= blur) {
-        return s;  // equal but for rounding, which N of a thin ellipse would magnify
-    }
-    const double k = s.b / s.a;  // L = sqrt(s.a) ((1, 0), (k, l22)), det s = s.a^2 l22^2
-    const double l22 = sqrt_det(s) / s.a;
-    const Tensor n = {t.a / s.a, (t.b - k * t.a) / (s.a * l22), t.q(-k, 1) / (s.a * l22 * l22)};
-    const Deviator dev(n);
-    const double high = dev.mean + dev.r;
-    if (high <= 1) return s;
-    const double low = det(t) / (det(s) * high);
-    if (low >= 1) return t;
-    const Spectrum e = spectrum(n);
-    const double x = e.x, y = k * e.x + l22 * e.y;
-    return s + ((high - 1) * s.a) * Tensor{x * x, x * y, y * y};
+    return std::fabs(difference.a) <= blur && std::fabs(difference.b) <= blur &&
+           std::fabs(difference.c) <= blur;
+}
+
+// The largest ellipse inside both unit ellipses: in the basis of the reduction, the larger of each
+// pair of eigenvalues. s itself where t allows more, and t where s does.
+inline Tensor intersect(Tensor s, Tensor t) {
+    if (nearly_equal(s, t)) return s;
+    const Reduction r(s, t);
+    if (r.high <= 1) return s;
+    if (r.low >= 1) return t;
+    return s + (r.high - 1) * Reduction::square(r.at_high);
+}
+
+// The smallest ellipse around both unit ellipses: the smaller of each pair of eigenvalues. Dual to
+// the intersection: the inverse of the intersection of the inverses.
+inline Tensor unite(Tensor s, Tensor t) {
+    if (nearly_equal(s, t)) return s;
+    const Reduction r(s, t);
+    if (r.high <= 1) return t;
+    if (r.low >= 1) return s;
+    return r.combined(r.low, 1);
 }
 
 }  // namespace metrics

@@ -1,16 +1,15 @@
 """The laws of the 2x2 algebra, against slow oracles in decimal arithmetic and scipy."""
 
-from decimal import Decimal, getcontext
+from decimal import Decimal
 
 import numpy as np
 import pytest
 import scipy.linalg
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from reference import tensor_oracle as oracle
 
 from metrics import MetricError, tensor
-
-getcontext().prec = 60
 
 
 def from_axes(h1, h2, angle):
@@ -34,13 +33,7 @@ def tensors(draw, condition=1e6):
 
 def exact(function, packed):
     """A function of the very doubles given, by the spectral formula with 60 digits."""
-    a, b, c = (Decimal(float(v)) for v in packed)
-    mean, d = (a + c) / 2, (a - c) / 2
-    r = (d * d + b * b).sqrt()
-    low, high = function(mean - r), function(mean + r)
-    slope = (high - low) / (2 * r) if r else Decimal(0)
-    middle = (high + low) / 2
-    return np.array([float(v) for v in (middle + slope * d, slope * b, middle - slope * d)])
+    return np.array(oracle.spectral(function, oracle.exact(packed)), float)
 
 
 def relative(got, wanted):
@@ -229,6 +222,26 @@ def test_limit_brings_sizes_into_the_interval_and_keeps_axes():
             tensor.limit(m, *bad)
 
 
+def test_limit_lowers_the_larger_size_of_thin_ellipses():
+    m = from_axes(np.array([0.01, 1.0]), np.array([2.0, 1.5]), 0.4)
+    got = tensor.limit(m, max_anisotropy=10)
+    np.testing.assert_allclose(got[0], from_axes(0.01, 0.1, 0.4))
+    np.testing.assert_array_equal(got[1], m[1])
+    np.testing.assert_allclose(tensor.sizes(tensor.limit(m, 0.05, 1, 4)), [[0.05, 0.2], [1, 1]])
+    for bad in (0.5, np.nan, -3):
+        with pytest.raises(MetricError, match="max_anisotropy"):
+            tensor.limit(m, max_anisotropy=bad)
+
+
+@given(tensors(1e10), st.floats(1e-3, 1), st.floats(1, 1e3), st.floats(1, 1e4))
+def test_limits_hold_and_hold_again(m, h_min, h_max, ratio):
+    got = tensor.limit(m, h_min, h_max, ratio)
+    small, large = tensor.sizes(got)[0]
+    assert h_min * (1 - 1e-9) <= small <= large <= h_max * (1 + 1e-6)
+    assert large <= small * ratio * (1 + 1e-6)
+    assert relative(tensor.limit(got, h_min, h_max, ratio), got) < 1e-9
+
+
 # --- functions of several ----------------------------------------------------------------------
 
 
@@ -292,6 +305,95 @@ def test_intersection_of_crossed_layers_keeps_the_thin_size_of_each():
     np.testing.assert_allclose(tensor.sizes(tensor.intersect(s, t)), [[1e-3, 1e-3]], rtol=1e-12)
 
 
+@given(tensors(), tensors())
+def test_union_is_commutative_and_never_finer(s, t):
+    both = tensor.union(s, t)
+    scale = np.abs(s).max() + np.abs(t).max()
+    assert relative(tensor.union(t, s), both) < 1e-9
+    assert smallest_eigenvalue(s - both)[0] > -1e-12 * scale
+    assert smallest_eigenvalue(t - both)[0] > -1e-12 * scale
+
+
+@given(tensors(), tensors())
+def test_union_and_intersection_add_up(s, t):
+    both = tensor.union(s, t) + tensor.intersect(s, t)
+    assert np.abs(both - (s + t)).max() < 1e-13 * np.abs(s + t).max()
+
+
+@given(tensors(1e4), tensors(1e4))
+def test_union_is_dual_to_intersection(s, t):
+    def inverse(m):
+        return tensor.power(m, -1)
+
+    dual = inverse(tensor.intersect(inverse(s), inverse(t)))
+    assert relative(tensor.union(s, t), dual) < 1e-7
+
+
+@given(tensors())
+def test_union_is_idempotent_and_absorbs(m):
+    np.testing.assert_array_equal(tensor.union(m, m), m)
+    np.testing.assert_array_equal(tensor.union(m, 2 * m), m)
+    np.testing.assert_array_equal(tensor.union(2 * m, m), m)
+    np.testing.assert_array_equal(tensor.intersect(m, tensor.union(m, 2 * m)), m)
+
+
+@given(tensors(1e4), tensors(1e4), st.floats(-2, 2), st.floats(-2, 2), st.floats(-2, 2))
+def test_intersection_and_union_go_along_with_linear_maps(s, t, a, b, c):
+    """Of all ellipses inside, the largest: that does not depend on coordinates."""
+    g = np.array([[1.0, a], [0.0, 1.0]]) @ np.array([[1.0, 0.0], [b, 1.0]]) * np.exp(c)
+
+    def mapped(m):
+        return tensor.pack((lambda x: 0.5 * (x + x.T))(g.T @ tensor.unpack(m)[0] @ g)[None])
+
+    for function in (tensor.intersect, tensor.union):
+        got, wanted = function(mapped(s), mapped(t)), mapped(function(s, t))
+        assert relative(got, wanted) < 1e-7
+
+
+def test_intersection_is_the_largest_ellipse_inside_and_union_the_smallest_around():
+    """Against ellipses at random that lie inside, or around, both."""
+    rng = np.random.default_rng(11)
+    s, t = random_tensors(200, 100, seed=8), random_tensors(200, 100, seed=9)
+    inside, around = tensor.intersect(s, t), tensor.union(s, t)
+    angles = np.linspace(0, np.pi, 721)
+    e = np.stack([np.cos(angles), np.sin(angles)], 1)
+
+    def squares(m):
+        return np.einsum("ki,nij,kj->nk", e, tensor.unpack(m), e)
+
+    for _ in range(20):
+        other = random_tensors(200, 1e4, seed=rng.integers(1 << 30))
+        q, lower, upper = squares(other), squares(s), squares(t)
+        largest = other * (np.maximum(lower, upper) / q).max(1)[:, None]
+        smallest = other * (np.minimum(lower, upper) / q).min(1)[:, None]
+        assert (tensor.det(largest) >= tensor.det(inside) * (1 - 1e-3)).all()
+        assert (tensor.det(smallest) <= tensor.det(around) * (1 + 1e-3)).all()
+
+
+@pytest.mark.parametrize("condition", [1.001, 1e3, 1e10])
+def test_simultaneous_reduction_makes_identity_and_diagonal(condition):
+    s, t = random_tensors(200, condition, seed=12), random_tensors(200, condition, seed=13)
+    values, p = tensor.simultaneous_reduction(s, t)
+    assert (values[:, 0] > 0).all() and (values[:, 0] <= values[:, 1]).all()
+    for k in range(200):
+        # Backward: what P makes of both is right up to a small change of their entries.
+        inverse = np.linalg.inv(p[k])
+        first = inverse.T @ inverse
+        second = inverse.T * values[k] @ inverse
+        assert relative(first, tensor.unpack(s)[k]) < 1e-14
+        assert relative(second, tensor.unpack(t)[k]) < 1e-14
+
+
+def test_simultaneous_reduction_agrees_with_scipy():
+    s, t = random_tensors(50, 1e3, seed=14), random_tensors(50, 1e3, seed=15)
+    values, p = tensor.simultaneous_reduction(s, t)
+    for k in range(50):
+        wanted, vectors = scipy.linalg.eigh(tensor.unpack(t)[k], tensor.unpack(s)[k])
+        np.testing.assert_allclose(values[k], wanted, rtol=1e-9)
+        signs = np.sign((p[k] * vectors).sum(0))
+        np.testing.assert_allclose(p[k] * signs, vectors, rtol=1e-8, atol=1e-8 * abs(vectors).max())
+
+
 @given(tensors(), tensors(), st.floats(-3, 3), st.floats(-3, 3), st.floats(0.1, 10))
 def test_length_is_symmetric_homogeneous_and_between_the_ends(s, t, dx, dy, k):
     def length(a, b, e):
@@ -314,7 +416,7 @@ def test_length_of_a_geometric_size_is_nearly_the_logarithmic_one():
 
 
 def test_pairs_must_match():
-    for function in (tensor.intersect, tensor.geometric_mean):
+    for function in (tensor.intersect, tensor.union, tensor.geometric_mean):
         with pytest.raises(MetricError, match="both sides, not 1 and 2"):
             function([0.1], [0.1, 0.2])
     with pytest.raises(MetricError, match=r"edges must have the shape \(1, 2\)"):

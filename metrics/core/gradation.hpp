@@ -1,0 +1,133 @@
+// Limits how fast a metric known at vertices changes along the edges between them.
+//
+// A law says what a vertex p allows at its neighbour q. Where q allows more, q is made finer, never
+// p coarser. The vertex of the smallest size speaks first, as in Dijkstra's algorithm: for sizes
+// without direction nearly every vertex then has its final value when its turn comes. Tensors may
+// take several turns, because the intersection of two may be finer, in between, than either:
+//
+//           p speaks            q has changed, is queued, and speaks in its turn
+//     p o------------> o q ------------> o ...
+//
+// A vertex changes only by more than the tolerance, and each step away from where a size comes from
+// allows more, so that it ends; and what has ended is left as it is when done again.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <queue>
+#include <utility>
+#include <vector>
+
+#include "metrics/core/adjacency.hpp"
+#include "metrics/core/tensor.hpp"
+
+namespace metrics {
+
+enum class GradationLaw { h_correction, metric, mixed };
+
+struct Gradation {
+    GradationLaw law;
+    double log_beta;   // of the bound on growth, above 0
+    double tolerance;  // relative, on sizes
+};
+
+// What one vertex allows around it: its spectrum is wanted for each of its edges.
+class Source {
+  public:
+    Source(Tensor m, const Gradation& rule) : m_(m), spectrum_(spectrum(m)), rule_(rule) {}
+
+    // The largest size first: the queue has the largest eigenvalue on top.
+    double urgency() const { return spectrum_.high; }
+
+    // Makes the metric at the other end of the edge (dx, dy) finer if it has to be; true if it had.
+    bool refine(Tensor& other, double dx, double dy) const {
+        if (rule_.law == GradationLaw::h_correction) return correct(other, dx, dy);
+        const Tensor bound = rule_.law == GradationLaw::mixed ? mixed(dx, dy) : grown(dx, dy);
+        const double slack = 1 + rule_.tolerance;
+        if (!(Reduction(other, bound).high > slack * slack)) return false;
+        other = intersect(other, bound);
+        return true;
+    }
+
+  private:
+    // Metric-space growth: all sizes grow by the same factor, 1 + l ln(beta), with l the length of
+    // the edge in the metric here.
+    Tensor grown(double dx, double dy) const {
+        const double growth = 1 + rule_.log_beta * length(m_, dx, dy);
+        return (1 / (growth * growth)) * m_;
+    }
+
+    // Mixed-space growth: metric growth to 7/8, and to 1/8 physical growth, h + |e| ln(beta) for
+    // each size h by itself, which makes an ellipse rounder with the distance.
+    Tensor mixed(double dx, double dy) const {
+        constexpr double share = 1.0 / 8;
+        const double in_metric = 1 + rule_.log_beta * length(m_, dx, dy);
+        const double step = rule_.log_beta * std::sqrt(dx * dx + dy * dy);
+        const auto shrunk = [&](double eigenvalue) {
+            const double in_space = 1 + step * std::sqrt(eigenvalue);
+            return eigenvalue * std::pow(in_metric / in_space, 2 * share) / (in_metric * in_metric);
+        };
+        return from_spectrum(
+            {shrunk(spectrum_.low), shrunk(spectrum_.high), spectrum_.x, spectrum_.y});
+    }
+
+    // H-correction. With h = |e| / a here and |e| / b there, and the length l = (a - b) / ln(a / b)
+    // of an edge along which sizes change geometrically, the H-shock is (a / b)^(1 / l). If it is
+    // above beta, the other metric is multiplied so that it is beta.
+    bool correct(Tensor& other, double dx, double dy) const {
+        const double a = length(m_, dx, dy), b = length(other, dx, dy);
+        if (!(a > b)) return false;
+        const double ratio = std::log(a / b);
+        const double allowed = largest_ratio(rule_.log_beta * a);
+        if (!(ratio > allowed + std::log1p(rule_.tolerance))) return false;
+        other = std::exp(2 * (ratio - allowed)) * other;
+        return true;
+    }
+
+    // x > 0 with x^2 = k (1 - exp(-x)): the logarithm of a / b for the H-shock beta, k = a
+    // ln(beta). The difference of both sides is convex and not negative at the start, so that
+    // Newton's method falls to the root.
+    static double largest_ratio(double k) {
+        double x = std::min(k, std::sqrt(k));
+        for (int step = 0; step < 60; ++step) {
+            const double value = x * x + k * std::expm1(-x), slope = 2 * x - k * std::exp(-x);
+            const double next = x - value / slope;
+            if (!(next < x * (1 - 1e-15))) break;
+            x = next;
+        }
+        return x;
+    }
+
+    Tensor m_;
+    Spectrum spectrum_;
+    const Gradation& rule_;
+};
+
+// tensors: packed, one for each of the points; changed in place.
+inline void grade(const double* points, Tensor* tensors, const Adjacency& mesh,
+                  const Gradation& rule) {
+    std::vector<std::pair<double, Index>> all;
+    all.reserve(mesh.size());
+    for (std::size_t v = 0; v < mesh.size(); ++v) {
+        all.emplace_back(Source(tensors[v], rule).urgency(), Index(v));
+    }
+    std::priority_queue<std::pair<double, Index>> queue({}, std::move(all));
+    std::vector<char> waiting(mesh.size(), 1);
+    while (!queue.empty()) {
+        const Index p = queue.top().second;
+        queue.pop();
+        if (!waiting[p]) continue;  // it has spoken since, with a smaller size
+        waiting[p] = 0;
+        const Source source(tensors[p], rule);
+        for (const Index q : mesh.of(p)) {
+            const double dx = points[2 * q] - points[2 * p];
+            const double dy = points[2 * q + 1] - points[2 * p + 1];
+            if (!source.refine(tensors[q], dx, dy)) continue;
+            waiting[q] = 1;
+            queue.emplace(Source(tensors[q], rule).urgency(), q);
+        }
+    }
+}
+
+}  // namespace metrics

@@ -1,0 +1,228 @@
+"""Gradients and Hessians at the vertices of a mesh, recovered from values there."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _core
+from .arrays import Floats, Ints, as_numbers, as_points, as_triangles
+from .errors import MetricError
+
+__all__ = ["METHODS", "absolute", "gradients", "hessians"]
+
+METHODS = ("least squares", "projection", "green")
+
+
+def gradients(
+    points: ArrayLike, triangles: ArrayLike, values: ArrayLike, method: str = "least squares"
+) -> Floats:
+    """Gradients at the vertices, (n, 2), from values there.
+
+    Parameters
+    ----------
+    points : (n, 2) array_like
+    triangles : (m, 3) array_like of int
+        Counter-clockwise.
+    values : (n,) array_like
+    method : {"least squares", "projection"}, optional
+        ``"least squares"``: of the quadratic fitted around each vertex, as in `hessians`. Of second
+        order on any mesh, at the border too. ``"projection"``: the L2 projection, with the mass
+        lumped, of the gradients on triangles: their mean around the vertex, weighted by area. Of
+        first order, of second where the triangles lie symmetrically.
+
+    Raises
+    ------
+    MetricError
+        As for `hessians`.
+    """
+    p, t, u = _checked(points, triangles, values, method)
+    if method == "least squares":
+        return _fit(p, t, u)[0]
+    if method == "green":
+        raise MetricError("Green's formula gives Hessians; for gradients use the projection")
+    return _Lumped(p, t).gradient(u)
+
+
+def hessians(
+    points: ArrayLike, triangles: ArrayLike, values: ArrayLike, method: str = "least squares"
+) -> Floats:
+    """Second derivatives at the vertices, packed (n, 3), from values there.
+
+    Parameters
+    ----------
+    points : (n, 2) array_like
+    triangles : (m, 3) array_like of int
+        Counter-clockwise.
+    values : (n,) array_like
+    method : {"least squares", "projection", "green"}, optional
+        ``"least squares"``: of the quadratic that fits best, with equal weights, the values at
+        the vertex and at two rings of neighbours; more rings where these do not determine it well,
+        as at corners. Exact for quadratics. Of first order on any mesh, of second where the
+        neighbours lie symmetrically.
+        ``"projection"``: the gradients by the lumped L2 projection, projected again, and made
+        symmetric. ``"green"``: tested with the hat function of the vertex,
+        H_ij = -(integral of d_i u d_j hat) / (integral of hat), which is defined inside only;
+        vertices of the border take the mean of their neighbours.
+        The last two do not converge on irregular meshes, but are usable: they use one ring or two
+        blindly and cost less.
+
+    Returns
+    -------
+    (n, 3) array of float
+        (d²u/dx², d²u/dxdy, d²u/dy²).
+
+    Raises
+    ------
+    MetricError
+        For arrays that do not fit, values that are not finite, a triangle that is not
+        counter-clockwise, a vertex without triangle; and where values do not determine a quadratic
+        (the mesh is but one or two triangles thick), or Green's formula has no vertex inside.
+
+    References
+    ----------
+    Zhang, Naga: A new finite element gradient recovery method: superconvergence property. SIAM
+    Journal on Scientific Computing 26 (2005), 1192-1213: the quadratic fit.
+
+    Kamenski, Huang: How a nonconvergent recovered Hessian works in mesh adaptation. SIAM Journal
+    on Numerical Analysis 52 (2014), 1692-1708: why Hessians that do not converge still serve.
+    """
+    p, t, u = _checked(points, triangles, values, method)
+    if method == "least squares":
+        return _fit(p, t, u)[1]
+    lumped = _Lumped(p, t)
+    return lumped.green(u) if method == "green" else lumped.projected_twice(u)
+
+
+def absolute(hessians: ArrayLike, floor: ArrayLike = 0.0) -> Floats:
+    """The absolute values of symmetric tensors, packed (n, 3): the same axes, eigenvalues > 0.
+
+    Parameters
+    ----------
+    hessians : (n, 3) or (n, 2, 2) array_like
+        Symmetric, of any signs.
+    floor : float or (n,) array_like, optional
+        Eigenvalues are raised to it.
+    """
+    raw = np.asarray(as_numbers(hessians, "Hessians"), np.float64)
+    if raw.ndim == 3 and raw.shape[1:] == (2, 2):
+        raw = np.stack([raw[:, 0, 0], 0.5 * (raw[:, 0, 1] + raw[:, 1, 0]), raw[:, 1, 1]], axis=1)
+    if raw.ndim != 2 or raw.shape[1] != 3:
+        raise MetricError(f"Hessians must have the shape (n, 3) or (n, 2, 2), not {raw.shape}")
+    tensors = np.ascontiguousarray(raw)
+    if not np.isfinite(tensors).all():
+        i = int(np.argmin(np.isfinite(tensors).all(axis=1)))
+        raise MetricError(f"the Hessian at item {i} is not finite: {tensors[i].tolist()}")
+    floors = np.ascontiguousarray(np.broadcast_to(floor, len(tensors)), np.float64)
+    if not (floors >= 0).all():
+        raise MetricError("the floor of eigenvalues must not be negative")
+    return _core.absolute(tensors, floors)
+
+
+def _checked(
+    points: ArrayLike, triangles: ArrayLike, values: ArrayLike, method: str
+) -> tuple[Floats, Ints, Floats]:
+    if method not in METHODS:
+        raise MetricError(f"method must be one of {', '.join(map(repr, METHODS))}, not {method!r}")
+    p = as_points(points)
+    t = as_triangles(triangles, len(p))
+    u = np.ascontiguousarray(as_numbers(values, "values"), np.float64)
+    if u.shape != (len(p),):
+        raise MetricError(f"values must have the shape ({len(p)},), one a point, not {u.shape}")
+    if not np.isfinite(u).all():
+        i = int(np.argmin(np.isfinite(u)))
+        raise MetricError(f"the value at {_place(p, i)} is not finite: {u[i]}")
+    i = _core.check_triangles(p, t)
+    if i >= 0:
+        raise MetricError(f"triangle {i} = {tuple(t[i].tolist())} is not counter-clockwise")
+    alone = np.bincount(t.ravel(), minlength=len(p)) == 0
+    if alone.any():
+        raise MetricError(f"{_place(p, int(alone.argmax()))} is in no triangle; drop such points")
+    return p, t, u
+
+
+def _fit(p: Floats, t: Ints, u: Floats) -> tuple[Floats, Floats]:
+    first, second, undetermined = _core.quadratic_fit(p, t, u)
+    if undetermined >= 0:
+        raise MetricError(
+            f"the values around {_place(p, undetermined)} do not determine a quadratic: the points "
+            "there lie on two lines, or another conic; refine the mesh across, or use "
+            'the method "projection"'
+        )
+    return first, second
+
+
+def _place(p: Floats, i: int) -> str:
+    x, y = p[i].tolist()
+    return f"point {i} ({x!r}, {y!r})"
+
+
+class _Lumped:
+    """Linear finite elements with the mass matrix lumped: `mass` (n,) is its diagonal.
+
+    `slopes` (m, 3, 2) are the gradients of the three hat functions on each triangle.
+    """
+
+    def __init__(self, p: Floats, t: Ints) -> None:
+        self.triangles = t
+        corners = p[t]
+        opposite = corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]]
+        u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        doubled = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+        self.areas = doubled / 2
+        self.slopes = np.stack([-opposite[..., 1], opposite[..., 0]], 2) / doubled[:, None, None]
+        self.mass = self._gathered(np.repeat(self.areas[:, None] / 3, 3, axis=1))
+
+    def gradient(self, u: Floats) -> Floats:
+        """The projection of the gradient, (n, 2)."""
+        parts = self._on_triangles(u) * (self.areas / 3)[:, None]
+        sums = [self._gathered(np.repeat(parts[:, [k]], 3, axis=1)) for k in range(2)]
+        return np.stack(sums, axis=1) / self.mass[:, None]
+
+    def projected_twice(self, u: Floats) -> Floats:
+        first = self.gradient(u)
+        of_x, of_y = self.gradient(first[:, 0]), self.gradient(first[:, 1])
+        return np.stack([of_x[:, 0], 0.5 * (of_x[:, 1] + of_y[:, 0]), of_y[:, 1]], axis=1)
+
+    def green(self, u: Floats) -> Floats:
+        g, s = self._on_triangles(u)[:, None] * self.areas[:, None, None], self.slopes
+        xx, yy = g[..., 0] * s[..., 0], g[..., 1] * s[..., 1]
+        xy = 0.5 * (g[..., 0] * s[..., 1] + g[..., 1] * s[..., 0])
+        sums = np.stack([self._gathered(part) for part in (xx, xy, yy)], axis=1)
+        out: Floats = -sums / self.mass[:, None]
+        self._spread_to_border(out)
+        return out
+
+    def _spread_to_border(self, out: Floats) -> None:
+        """Gives vertices of the border the mean of their neighbours, from inside outwards."""
+        ends, starts = self.triangles[:, [1, 2, 0]].ravel(), self.triangles.ravel()
+        known = np.ones(len(out), bool)
+        forward, backward = (
+            np.sort(a.astype(np.int64) * len(out) + b) for a, b in ((starts, ends), (ends, starts))
+        )
+        open_sides = np.setdiff1d(forward, backward)
+        known[open_sides // len(out)] = known[open_sides % len(out)] = False
+        a, b = np.concatenate([starts, ends]), np.concatenate([ends, starts])
+        while not known.all():
+            use = known[a] & ~known[b]
+            if not use.any():
+                raise MetricError(
+                    f"Green's formula needs a vertex inside, and vertex {int(known.argmin())} has "
+                    'none in its part of the mesh; use the method "least squares"'
+                )
+            count = np.bincount(b[use], minlength=len(out))
+            now = count > 0
+            for k in range(3):
+                sums = np.bincount(b[use], out[a[use], k], len(out))
+                out[now, k] = sums[now] / count[now]
+            known |= now
+
+    def _on_triangles(self, u: Floats) -> Floats:
+        """Gradients on triangles, (m, 2)."""
+        out: Floats = np.einsum("ti,tik->tk", u[self.triangles], self.slopes)
+        return out
+
+    def _gathered(self, parts: Floats) -> Floats:
+        """Sums at vertices (n,) of parts at the corners of triangles (m, 3)."""
+        out: Floats = np.bincount(self.triangles.ravel(), parts.ravel()).astype(np.float64)
+        return out

@@ -1,0 +1,162 @@
+"""From a solution to a metric, in one call."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import tensor
+from .arrays import Floats, Ints, as_numbers, as_points, as_triangles
+from .background import Background
+from .errors import MetricError
+from .measure import mesh_edges
+from .nodal import nodal_complexity
+from .normalise import (
+    Goal,
+    Limits,
+    check_norm,
+    combined,
+    count_goal,
+    interpolation_error,
+    lp_metric,
+    scaled_to,
+)
+from .recovery import absolute, hessians
+
+__all__ = ["metric_from_solution"]
+
+_FLATNESS = 1e-8  # curvature below this share of the largest is not told from none
+_ROUNDING = 32 * 2.0**-52  # what rounding of the values does to second differences
+
+
+def metric_from_solution(
+    points: ArrayLike,
+    triangles: ArrayLike,
+    values: ArrayLike,
+    *,
+    target_vertices: float | None = None,
+    complexity: float | None = None,
+    error: ArrayLike | None = None,
+    p: float = 2,
+    h_min: float = 0.0,
+    h_max: float = np.inf,
+    max_anisotropy: float = np.inf,
+    gradation: float | None = 1.5,
+    law: str = "mixed",
+    recovery: str = "least squares",
+    combine: str = "intersection",
+) -> Background:
+    """The metric of least error of linear interpolation, for what there is to spend.
+
+    In this order, always: the Hessian of each field at the vertices (`metrics.hessians`); its
+    absolute value, with the ratio of its sizes bounded by `max_anisotropy`; its L^p metric
+    (`metrics.lp_metric`); fields combined in the order given, after each is scaled to the same
+    complexity, or to its own error; then one factor for all, so that after the limits, the
+    gradation, and the limits again there is as much as was asked for.
+
+    Parameters
+    ----------
+    points : (n, 2) array_like
+    triangles : (m, 3) array_like of int
+    values : (n,) or (n, k) array_like
+        One or more fields at the points.
+    target_vertices : float, optional
+        The number of vertices by `metrics.predicted_vertices`. Meshes come within about 5 % of it.
+    complexity : float, optional
+        Instead: the integral of sqrt(det M).
+    error : float or (k,) array_like, optional
+        Instead: the L^p norm of the interpolation error, by `metrics.interpolation_error`, that no
+        field shall exceed.
+    p : float, optional
+        Of the norm, from 1 to inf. The smaller, the more small and weak features count.
+    h_min, h_max, max_anisotropy : float, optional
+        Bounds on the sizes and their ratio.
+    gradation, law : optional
+        Bound on growth and the law it follows, see `metrics.graded`; None for no bound.
+    recovery : {"least squares", "projection", "green"}, optional
+        How Hessians are found.
+    combine : {"intersection", "average"}, optional
+        How fields are combined.
+
+    Returns
+    -------
+    Background
+        The metric, carried by the mesh given.
+
+    Raises
+    ------
+    MetricError
+        If not exactly one target is given or the limits make it impossible; for a field that is
+        constant; and as for `metrics.hessians`.
+
+    Notes
+    -----
+    Eigenvalues of Hessians are raised to 1e-8 of the largest one, and to what rounding of the
+    values can make of a function without curvature: a linear function gives back the sizes of the
+    mesh it is on.
+
+    References
+    ----------
+    Loseille, Alauzet: Continuous mesh framework parts I and II. SIAM Journal on Numerical Analysis
+    49 (2011), 38-60 and 61-86.
+    """
+    check_norm(p)
+    where = as_points(points)
+    t = as_triangles(triangles, len(where))
+    fields = _as_fields(values, len(where))
+    curvatures = [
+        tensor.limit(_curvature(where, t, u, recovery), max_anisotropy=max_anisotropy)
+        for u in fields
+    ]
+    limits = Limits(h_min, h_max, max_anisotropy, gradation, law)
+    shapes = [lp_metric(h, p) for h in curvatures]
+    if error is None:
+        goal = count_goal(where, t, target_vertices, complexity)
+        amounts = [1 / nodal_complexity(where, t, m) for m in shapes]
+    else:
+        if target_vertices is not None or complexity is not None:
+            raise MetricError("give one target: target_vertices, complexity or error")
+        wanted = _as_errors(error, len(fields))
+
+        def shares(metrics: list[Floats]) -> list[float]:
+            pairs = zip(metrics, curvatures, wanted, strict=True)
+            return [interpolation_error(where, t, m, h, p) / e for m, h, e in pairs]
+
+        goal = Goal(lambda m: max(shares([m] * len(fields))), 1.0, "share of the error", False)
+        amounts = shares(shapes)
+    together = combined([k * m for k, m in zip(amounts, shapes, strict=True)], combine)
+    return Background(where, t, scaled_to(goal, together, where, t, limits))
+
+
+def _curvature(points: Floats, triangles: Ints, values: Floats, recovery: str) -> Floats:
+    """The absolute Hessian (n, 3), not below what can be told from rounding."""
+    second = hessians(points, triangles, values, recovery)
+    largest = np.abs(tensor.unpack(second)).max()
+    edges, _ = mesh_edges(triangles)
+    vectors = points[edges[:, 1]] - points[edges[:, 0]]
+    squares = (vectors**2).sum(axis=1)
+    around = np.full(len(points), np.inf)
+    np.minimum.at(around, edges.ravel(), np.repeat(squares, 2))
+    noise = _ROUNDING * np.abs(values).max() / around
+    return absolute(second, np.maximum(noise, _FLATNESS * largest))
+
+
+def _as_fields(values: ArrayLike, count: int) -> list[Floats]:
+    array = np.asarray(as_numbers(values, "values"), np.float64)
+    if array.ndim not in (1, 2) or len(array) != count or array.size == 0:
+        raise MetricError(
+            f"values must have the shape ({count},), or ({count}, k) for k fields, "
+            f"not {array.shape}"
+        )
+    fields = list(np.atleast_2d(array.T))
+    for k, u in enumerate(fields):
+        if np.ptp(u) == 0:
+            raise MetricError(f"field {k} is {u[0]:.6g} everywhere: it does not ask for any size")
+    return fields
+
+
+def _as_errors(error: ArrayLike, count: int) -> Floats:
+    wanted = np.asarray(as_numbers(error, "error"), np.float64)
+    if wanted.shape not in ((), (count,)) or not (wanted > 0).all():
+        raise MetricError(f"error must be positive, one number or {count}, not {error!r}")
+    return np.broadcast_to(wanted, count)
