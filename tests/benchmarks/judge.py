@@ -88,10 +88,9 @@ def _mesh(domain, points, triangles):
 
 
 def _edges_within(domain, points, edges):
-    """For each segment that is not border, the edges with both ends on it."""
+    """For each piece of a segment that is not border, the edges with both ends on it."""
     tolerance = ROUNDING * float(np.ptp(domain.points, axis=0).max())
-    within = np.setdiff1d(np.arange(len(domain.segments)), domain.boundary)
-    for a, b in domain.points[domain.segments[within]]:
+    for a, b in domain.points[domain.pieces[~domain.piece_is_boundary]]:
         along = (points - a) @ (b - a) / ((b - a) @ (b - a))
         off = points - a - np.clip(along, 0, 1)[:, None] * (b - a)
         is_on = np.hypot(*off.T) <= tolerance

@@ -8,8 +8,12 @@ from plots import plot_all
 from worker import MESHERS
 
 PEERS = [name for name in MESHERS if name != "adaptmesh"]
-UNIT_MARGIN = 0.0005  # shares of unit edges nearer than this are the same
+
+# What is nearer than this counts as the same.
+UNIT_MARGIN = 0.0005
 TIME_MARGIN = 1.05
+QUALITY_MARGIN = 0.05
+ERROR_MARGIN = 1.01
 LEVELS = (1_000, 10_000, 100_000)
 
 
@@ -134,35 +138,62 @@ def error_table(table):
 
 
 def behind(table):
-    """Where a peer is faster in its last pass, or has a larger share of unit edges."""
+    """Where a peer does better than adaptmesh: for each advantage the cases, and by how much."""
     lines = []
     for level in LEVELS:
-        for case in table.cases(level):
-            ours = table.get(case, level, "adaptmesh")
-            for peer in PEERS:
-                row = table.get(case, level, peer)
-                if row is None or "failed" in row:
-                    continue
-                lines += [f"- {case}, {level:,}: {fact}" for fact in advantages(row, ours)]
+        for advantage, of_row in ADVANTAGES.items():
+            found = [
+                f"{peer} on {', '.join(cases)}"
+                for peer in PEERS
+                if (cases := list(_cases_with(table, level, peer, of_row)))
+            ]
+            if found:
+                lines.append(f"- {level:,}, {advantage}: {'; '.join(found)}")
     return "\n".join(lines) or "Nowhere in this run."
 
 
-def advantages(row, ours):
-    if row["cpu"] * TIME_MARGIN < ours["cpu"]:
-        yield (
-            f"{row['mesher']} is faster in its last pass, {seconds(row['cpu'])} s against "
-            f"{seconds(ours['cpu'])} s ({seconds(row['total_cpu'])} s in all)"
-        )
-    if row["unit"] > ours["unit"] + UNIT_MARGIN:
-        yield (
-            f"{row['mesher']} has more unit edges, {100 * row['unit']:.2f} % against "
-            f"{100 * ours['unit']:.2f} %"
-        )
-    if row["quality_min"] > ours["quality_min"] + 0.05:
-        yield (
-            f"the worst triangle of {row['mesher']} is better, {row['quality_min']:.2f} against "
-            f"{ours['quality_min']:.2f}"
-        )
+def _cases_with(table, level, peer, of_row):
+    for case in table.cases(level):
+        ours, row = table.get(case, level, "adaptmesh"), table.get(case, level, peer)
+        if row and "failed" not in row and (how_much := of_row(row, ours)):
+            yield f"{case} ({how_much})"
+
+
+def _faster(row, ours):
+    return f"{ours['cpu'] / row['cpu']:.1f}×" if row["cpu"] * TIME_MARGIN < ours["cpu"] else None
+
+
+def _faster_in_all(row, ours):
+    ratio = ours["total_cpu"] / row["total_cpu"]
+    return f"{ratio:.1f}×" if ratio > TIME_MARGIN else None
+
+
+def _more_unit(row, ours):
+    gain = row["unit"] - ours["unit"]
+    return (
+        f"{100 * row['unit']:.2f} against {100 * ours['unit']:.2f} %"
+        if gain > UNIT_MARGIN
+        else None
+    )
+
+
+def _better_worst(row, ours):
+    pair = row["quality_min"], ours["quality_min"]
+    return "{:.2f} against {:.2f}".format(*pair) if pair[0] > pair[1] + QUALITY_MARGIN else None
+
+
+def _less_error(row, ours):
+    pair = [r.get("error", 0) * r["vertices"] for r in (row, ours)]
+    return "{:.3f} against {:.3f}".format(*pair) if pair[0] * ERROR_MARGIN < pair[1] else None
+
+
+ADVANTAGES = {
+    "faster in the last pass": _faster,
+    "faster in all passes": _faster_in_all,
+    "more unit edges": _more_unit,
+    "a better worst triangle": _better_worst,
+    "less error for each vertex": _less_error,
+}
 
 
 def size_table(table):

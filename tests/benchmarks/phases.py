@@ -22,6 +22,7 @@ STAGES = {
     "triangulate_outline": "triangulate",
     "place_ahead_of_front": "front",
     "place_along_edges": "edges",
+    "insert_what_was_missed": "missed",
     "finished_mesh": "finish",
 }
 REPORTED = {"smoothing": "smooth", "improving": "improve"}  # stages of its progress
