@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "adaptmesh/core/triangulate.hpp"
+#include "tests/sanitize/mesher.hpp"
 
 using namespace adaptmesh;
 
@@ -168,7 +169,38 @@ void run_triangulate(const Input& input) {
             "the other sub-edges are locked");
 }
 
-constexpr void (*PARTS[])(const Input&) = {run_delaunay, run_locate, run_triangulate};
+// The mesh, with one metric after the other from input to input: the constrained edges are there,
+// and none of them has vanished.
+void run_mesher(const Input& input) {
+    static std::size_t turn = 0;
+    NoPoll poll;
+    const ConstrainedTriangulation outline =
+        triangulate(input.points, input.segments, input.options, poll);
+    const auto& all = sanitize::metrics_of_unit_square();
+    const sanitize::MovedMetric metric(all[++turn % all.size()], input.points);
+    if (!metric.is_defined()) return;
+
+    for (bool ahead_of_front : {true, false}) {
+        sanitize::MesherRun run(outline, input.points, metric);
+        if (ahead_of_front) run.fill_ahead_of_front();
+        run.fill_along_edges();
+        run.improve();
+        Input result{input.name + ", meshed", {}, {}, {}};
+        for (const Vertex& v : run.mesh.vertices) result.points.push_back(v.at);
+        check_mesh(run.mesh.topology, result);
+        std::vector<Place> scratch;
+        for (const SubEdge& e : run.constrained) {
+            const auto& topology = run.mesh.topology;
+            Place place = topology.find_edge(e.a, e.b, scratch);
+            if (place.triangle == NONE) place = topology.find_edge(e.b, e.a, scratch);
+            require(place.triangle != NONE, result, "constrained edges are edges");
+            require(is_locked(topology.triangles[place.triangle].n[place.slot]), result,
+                    "constrained edges are locked");
+        }
+    }
+}
+
+constexpr void (*PARTS[])(const Input&) = {run_delaunay, run_locate, run_triangulate, run_mesher};
 
 // ---- The inputs ----
 
