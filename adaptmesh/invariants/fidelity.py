@@ -72,7 +72,7 @@ class DomainSubject(Subject):
         edge, segment = tree.query(lines, predicate="dwithin", distance=self.tolerance)
         start, end = self.mesh.edges[edge].T
         off = np.maximum(self._distance(segment, start), self._distance(segment, end))
-        # An edge belongs to one segment: where two are within the tolerance (tiny edges at a corner,
+        # An edge belongs to one segment: where two are in reach (tiny edges at a corner,
         # boundaries that nearly touch) to the nearest.
         nearest = np.lexsort((off, edge))
         first = np.diff(edge[nearest], prepend=-1) > 0
