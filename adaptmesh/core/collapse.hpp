@@ -34,15 +34,25 @@ class Collapser {
                 MetricMesh::quality(target, mesh_.vertices[p], mesh_.vertices[q]);
             worst_new = std::min(worst_new, quality);
             if (!mesh_.is_positive(to, p, q)) return false;
-            if (mesh_.length(to, p) > LONGEST_UNIT) return false;
+            if (inherited_length(from, to, p) > LONGEST_UNIT) return false;
         }
         if (worst_new < options_.good_quality && worst_new < options_.quality_kept * worst_old)
             return false;
+        for (Place place : around_) {
+            const Index p = mesh_.triangle(place.triangle).v[next(place.slot)];
+            if (p != to) mesh_.corrections.set(to, p, mesh_.corrections.of(from, p));
+        }
         mesh_.topology.collapse(around_, from, to);
         return true;
     }
 
   private:
+    // The edge to p is corrected like that of the vertex that goes: they are near each other.
+    double inherited_length(Index from, Index to, Index p) const {
+        return mesh_.corrections.of(from, p) *
+               MetricMesh::length(mesh_.vertices[to], mesh_.vertices[p]);
+    }
+
     MetricMesh& mesh_;
     CollapseOptions options_;
     std::vector<Place> around_;

@@ -19,14 +19,18 @@ namespace adaptmesh {
 struct BallCost {
     static constexpr double QUALITY_WEIGHT = 0.3;
     static constexpr double STEEPENING = 4.0;
+    static constexpr double HOPELESS = 3.0;
 
     static double edge(double length) {
         const double u = length - 1 / length;
         return u * u * (1 + STEEPENING * u * u);
     }
+    // Grows but slowly where it is hopeless: beside a jump of the metric no triangle is good, and
+    // the edges must not suffer for it.
     static double triangle(double quality) {
         const double u = 1 / quality - 1;
-        return QUALITY_WEIGHT * u * u;
+        return QUALITY_WEIGHT *
+               (u < HOPELESS ? u * u : HOPELESS * HOPELESS * (1 + 2 * std::log(u / HOPELESS)));
     }
 };
 

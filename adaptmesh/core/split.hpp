@@ -28,8 +28,8 @@ class Splitter {
         // None of the new edges may be as far from unit as the one that goes.
         const double now_off = ratio_to_unit(length);
         if (ratio_to_unit(0.5 * length) >= now_off ||
-            ratio_to_unit(MetricMesh::length(p, a)) >= now_off ||
-            ratio_to_unit(MetricMesh::length(p, d)) >= now_off)
+            ratio_to_unit(inherited_length(p, a, q.a, q)) >= now_off ||
+            ratio_to_unit(inherited_length(p, d, q.d, q)) >= now_off)
             return false;
         const Index u = triangle_of(mesh_.triangle(edge.triangle).n[edge.slot]);
         const double area = mesh_.euclidean_area(edge.triangle) + mesh_.euclidean_area(u);
@@ -51,6 +51,12 @@ class Splitter {
     }
 
   private:
+    // The edge from p, on (b, c), to a vertex opposite is corrected like those from b and c.
+    double inherited_length(const Vertex& p, const Vertex& opposite, Index o, const Quad& q) const {
+        const double ratio = mesh_.corrections.of(q.b, o) * mesh_.corrections.of(q.c, o);
+        return std::sqrt(ratio) * MetricMesh::length(p, opposite);
+    }
+
     // Half way in the metric, the size taken to be geometric along the edge: log((1 + r) / 2) / log
     // r with r the ratio of the speeds at its ends.
     static Vertex middle(const Vertex& b, const Vertex& c) {
