@@ -21,6 +21,9 @@ Ints = NDArray[np.int32]
 # boundary between two looks would be missed there for good.
 LONGEST_CHORD = 0.125
 
+# More chords at once would be a boundary of millions of vertices (and a gigabyte of memory).
+MOST_CHORDS = 8_000_000
+
 
 @dataclass(frozen=True)
 class Cuts:
@@ -50,7 +53,7 @@ def measure_edges(
 ) -> Floats:
     """Metric lengths of the edges in a sampler, asking the field where it wants to know."""
     while len(wanted := sampler.wanted()):
-        if len(wanted) > most_points:
+        if len(wanted) > min(most_points * 2 / LONGEST_CHORD, MOST_CHORDS):
             x, y = wanted[len(wanted) // 2]
             raise BudgetError(
                 f"the boundary alone needs more than {most_points:,} vertices, many of them near "

@@ -19,6 +19,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 
+LARGEST = 1e75  # coordinate: its fourth power is still a double
+
+
 class Domain:
     """A planar domain: straight segments between points, with holes, regions and names.
 
@@ -210,6 +213,13 @@ def _checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
     if len(bad):
         x, y = out[bad[0]]
         raise DomainError(f"{what} {bad[0]} is ({x}, {y}): coordinates must be finite")
+    bad = np.flatnonzero((np.abs(out) > LARGEST).any(axis=1))
+    if len(bad):
+        x, y = out[bad[0]]
+        raise DomainError(
+            f"{what} {bad[0]} is ({x:g}, {y:g}): areas and squares of coordinates beyond "
+            f"{LARGEST:g} overflow; choose another unit of length"
+        )
     return _read_only(out)
 
 

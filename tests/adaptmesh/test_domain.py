@@ -81,6 +81,7 @@ def test_it_never_changes():
         (([(0, 0), (1, 0), (np.nan, 1)], [(0, 1), (1, 2), (2, 0)]), r"point 2 is \(nan, 1"),
         (([(0, 0), (1, np.inf), (1, 1)], [(0, 1), (1, 2), (2, 0)]), "point 1 .* must be finite"),
         (([(0, 0), (1, 0)], [(0, 1)]), "2 points: at least 3"),
+        (([(0, 0), (1e80, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)]), "point 1 .* another unit"),
         (([(0, 0, 0), (1, 0, 0), (1, 1, 0)], RING), r"shape \(3, 3\)"),
         (("abc", RING), "array of numbers"),
         ((SQUARE, [(0, 1), (1, 2), (2, 4)]), "segment 2 joins points 2 and 4"),
