@@ -69,7 +69,7 @@ def graded(
 
     Notes
     -----
-    The vertex of the smallest size acts first; one that has been made finer acts again. As the
+    The vertex of the smallest ellipse acts first; one that has been made finer acts again. As the
     intersection is not associative, another order would give another, slightly different result;
     this one is always the same.
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core, tensor
-from .arrays import Floats, as_indices, as_points, as_triangles
+from .arrays import Floats, Ints, as_indices, as_points, as_triangles
 from .errors import MetricError
 from .measure import mesh_edges
 
@@ -128,10 +128,20 @@ def predicted_vertices(points: ArrayLike, triangles: ArrayLike, metric: Any) -> 
     """
     p = as_points(points)
     m = at_vertices(p, metric)
+    border = border_edges(triangles)
+    return vertices_of(nodal_complexity(p, triangles, m), nodal_lengths(p, border, m).sum())
+
+
+def vertices_of(complexity: float, border: float) -> float:
+    """How many vertices a unit mesh has, with a border of that metric length."""
+    return float(2 / np.sqrt(3) * complexity + border / 2 + 1)
+
+
+def border_edges(triangles: ArrayLike) -> Ints:
+    """The edges with one triangle only, (k, 2)."""
     edges, sides = mesh_edges(triangles)
-    border = edges[np.bincount(sides.ravel(), minlength=len(edges)) == 1]
-    length = nodal_lengths(p, border, m).sum()
-    return float(2 / np.sqrt(3) * nodal_complexity(p, triangles, m) + length / 2 + 1)
+    out: Ints = edges[np.bincount(sides.ravel(), minlength=len(edges)) == 1]
+    return out
 
 
 def efficiency_index(lengths: ArrayLike, definition: str = "mean square") -> float:

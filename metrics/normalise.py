@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +14,7 @@ from . import tensor
 from .arrays import Floats, Ints, as_points, as_triangles
 from .errors import MetricError
 from .gradation import graded
-from .nodal import nodal_complexity, predicted_vertices
+from .nodal import border_edges, nodal_complexity, nodal_lengths, vertices_of
 
 __all__ = [
     "Limits",
@@ -215,7 +216,13 @@ def count_goal(
     if target_vertices is not None:
         if not 3 <= target_vertices < np.inf:
             raise MetricError(f"target_vertices must be at least 3, not {target_vertices!r}")
-        return Goal(lambda m: predicted_vertices(points, triangles, m), target_vertices, "vertices")
+        border = border_edges(triangles)
+
+        def vertices(m: Floats) -> float:
+            length = nodal_lengths(points, border, m).sum()
+            return vertices_of(nodal_complexity(points, triangles, m), length)
+
+        return Goal(vertices, target_vertices, "vertices")
     assert complexity is not None
     if not 0 < complexity < np.inf:
         raise MetricError(f"the complexity must be positive, not {complexity!r}")
@@ -235,13 +242,14 @@ def scaled_to(
     def at(x: float) -> Floats:
         return limits.applied(np.exp(x) * metric, points, triangles)
 
+    @cache
     def excess(x: float) -> float:
         return goal.excess(at(x))
 
     coarsest, finest = _useful_factors(metric, limits)
     x = float(np.clip(-goal.excess(metric), coarsest, finest))
-    here, step = excess(x), 0.25
-    side = np.sign(here)
+    here = excess(x)
+    side, step = np.sign(here), max(abs(here), _PRECISION)
     while side * here > 0:
         last, step = x, 2 * step
         x = float(np.clip(x - side * step, coarsest, finest))

@@ -1,9 +1,10 @@
 // Limits how fast a metric known at vertices changes along the edges between them.
 //
 // A law says what a vertex p allows at its neighbour q. Where q allows more, q is made finer, never
-// p coarser. The vertex of the smallest size speaks first, as in Dijkstra's algorithm: for sizes
-// without direction nearly every vertex then has its final value when its turn comes. Tensors may
-// take several turns, because the intersection of two may be finer, in between, than either:
+// p coarser. The vertex of the smallest ellipse speaks first, as in Dijkstra's algorithm: for sizes
+// without direction every vertex then has its final value when its turn comes. Tensors may take
+// several turns, because the intersection of two may be finer, in between, than either; in the
+// order of area it is between one and two, in the order of the smallest size it was over ten.
 //
 //           p speaks            q has changed, is queued, and speaks in its turn
 //     p o------------> o q ------------> o ...
@@ -37,8 +38,8 @@ class Source {
   public:
     Source(Tensor m, const Gradation& rule) : m_(m), spectrum_(spectrum(m)), rule_(rule) {}
 
-    // The largest size first: the queue has the largest eigenvalue on top.
-    double urgency() const { return spectrum_.high; }
+    // The queue has the smallest ellipse on top.
+    static double urgency(Tensor m) { return det(m); }
 
     // Makes the metric at the other end of the edge (dx, dy) finer if it has to be; true if it had.
     bool refine(Tensor& other, double dx, double dy) const {
@@ -59,14 +60,15 @@ class Source {
     }
 
     // Mixed-space growth: metric growth to 7/8, and to 1/8 physical growth, h + |e| ln(beta) for
-    // each size h by itself, which makes an ellipse rounder with the distance.
+    // each size h by itself, which makes an ellipse rounder with the distance. Of sizes; so of
+    // eigenvalues it is the fourth root.
     Tensor mixed(double dx, double dy) const {
-        constexpr double share = 1.0 / 8;
         const double in_metric = 1 + rule_.log_beta * length(m_, dx, dy);
         const double step = rule_.log_beta * std::sqrt(dx * dx + dy * dy);
         const auto shrunk = [&](double eigenvalue) {
             const double in_space = 1 + step * std::sqrt(eigenvalue);
-            return eigenvalue * std::pow(in_metric / in_space, 2 * share) / (in_metric * in_metric);
+            const double share = std::sqrt(std::sqrt(in_metric / in_space));
+            return eigenvalue * share / (in_metric * in_metric);
         };
         return from_spectrum(
             {shrunk(spectrum_.low), shrunk(spectrum_.high), spectrum_.x, spectrum_.y});
@@ -110,14 +112,14 @@ inline void grade(const double* points, Tensor* tensors, const Adjacency& mesh,
     std::vector<std::pair<double, Index>> all;
     all.reserve(mesh.size());
     for (std::size_t v = 0; v < mesh.size(); ++v) {
-        all.emplace_back(Source(tensors[v], rule).urgency(), Index(v));
+        all.emplace_back(Source::urgency(tensors[v]), Index(v));
     }
     std::priority_queue<std::pair<double, Index>> queue({}, std::move(all));
     std::vector<char> waiting(mesh.size(), 1);
     while (!queue.empty()) {
         const Index p = queue.top().second;
         queue.pop();
-        if (!waiting[p]) continue;  // it has spoken since, with a smaller size
+        if (!waiting[p]) continue;  // it has spoken since, with a smaller ellipse
         waiting[p] = 0;
         const Source source(tensors[p], rule);
         for (const Index q : mesh.of(p)) {
@@ -125,7 +127,7 @@ inline void grade(const double* points, Tensor* tensors, const Adjacency& mesh,
             const double dy = points[2 * q + 1] - points[2 * p + 1];
             if (!source.refine(tensors[q], dx, dy)) continue;
             waiting[q] = 1;
-            queue.emplace(Source(tensors[q], rule).urgency(), q);
+            queue.emplace(Source::urgency(tensors[q]), q);
         }
     }
 }
