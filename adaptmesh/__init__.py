@@ -1,5 +1,13 @@
 """Adaptive anisotropic meshing of planar domains governed by a metric field."""
 
+try:
+    from . import _core  # noqa: F401
+except ImportError as error:
+    raise ImportError(
+        f"the compiled core of adaptmesh is not beside {__file__}: this is its source tree; start "
+        "Python elsewhere, or install it here with: pip install --no-build-isolation -e ."
+    ) from error
+
 from .adapt import adapt
 from .domain import Domain
 from .domain_io import read_domain

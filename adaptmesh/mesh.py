@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from metrics.measure import mesh_edges
+
 if TYPE_CHECKING:
     from .domain import Domain
     from .validate import Validity
@@ -83,12 +85,7 @@ class Mesh:
     @cached_property
     def unique_edges(self) -> Ints:
         """All edges of the triangles once, (e, 2), smaller vertex number first, sorted."""
-        t = self.triangles
-        sides = np.sort(np.concatenate([t[:, [1, 2]], t[:, [2, 0]], t[:, [0, 1]]]), axis=1)
-        keys = np.unique(sides[:, 0].astype(np.int64) * len(self.points) + sides[:, 1])
-        n = max(len(self.points), 1)
-        out: Ints = np.stack([keys // n, keys % n], axis=1).astype(np.int32)
-        return out
+        return mesh_edges(self.triangles)[0]
 
     @cached_property
     def areas(self) -> Floats:

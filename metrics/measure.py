@@ -132,7 +132,7 @@ def mesh_edges(triangles: ArrayLike) -> tuple[Ints, Ints]:
     t = as_triangles(triangles, np.iinfo(np.int32).max)
     ends = np.sort(t[:, [[1, 2], [2, 0], [0, 1]]], axis=2).reshape(-1, 2).astype(np.int64)
     keys, sides = np.unique(ends[:, 0] << 32 | ends[:, 1], return_inverse=True)
-    edges = np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1).astype(np.int32)
+    edges: Ints = np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1).astype(np.int32)
     return edges, sides.reshape(-1, 3).astype(np.int32)
 
 
