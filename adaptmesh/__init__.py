@@ -4,8 +4,8 @@ try:
     from . import _core  # noqa: F401
 except ImportError as error:
     raise ImportError(
-        f"the compiled core of adaptmesh is not beside {__file__}: this is its source tree; start "
-        "Python elsewhere, or install it here with: pip install --no-build-isolation -e ."
+        f"the compiled core of adaptmesh is not beside {__file__}: this is its source tree. "
+        "Install it (pip install .) and start Python in another folder"
     ) from error
 
 from .adapt import adapt
