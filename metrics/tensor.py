@@ -38,13 +38,25 @@ __all__ = [
 ]
 
 
-def pack(values: ArrayLike, *, points: Floats | None = None, what: str = "the metric") -> Floats:
+ORDERS = {"packed": [0, 1, 2], "voigt": [0, 2, 1]}
+
+
+def pack(
+    values: ArrayLike,
+    *,
+    order: str = "packed",
+    points: Floats | None = None,
+    what: str = "the metric",
+) -> Floats:
     """Sizes, packed tensors or matrices as checked packed tensors.
 
     Parameters
     ----------
     values : (n,), (n, 3) or (n, 2, 2) array_like
         Sizes h (the tensor is ``eye(2) / h**2``), packed tensors, or symmetric matrices.
+    order : {"packed", "voigt"}, optional
+        Of the columns of an (n, 3) array: m11, m12, m22, as everywhere in this package; or, as
+        mechanics has it, xx, yy, xy: m11, m22, m12. Nothing is guessed from the values.
     points : (n, 2) array of float, optional
         Where the values are; only for the error messages.
     what : str, optional
@@ -63,6 +75,8 @@ def pack(values: ArrayLike, *, points: Floats | None = None, what: str = "the me
         trace; 1e-5 in single precision) or not positive definite, or numbers that are not finite
         or beyond 1e±75 in size.
     """
+    if order not in ORDERS:
+        raise ValueError(f"order={order!r} is none of {', '.join(map(repr, ORDERS))}")
     if isinstance(values, np.ma.MaskedArray):  # np.asarray would unmask what is masked
         values = np.ma.filled(values.astype(np.float64), np.nan)
     raw = as_numbers(values, what)
@@ -75,6 +89,8 @@ def pack(values: ArrayLike, *, points: Floats | None = None, what: str = "the me
     if array.ndim == 1:
         tensors, first = _core.check_sizes(array)
     elif array.ndim == 2:
+        if order != "packed":
+            array = np.ascontiguousarray(array[:, ORDERS[order]])
         tensors, first = _core.check_tensors(array)
     else:
         tensors, first = _core.check_matrices(array, asymmetry)
@@ -341,7 +357,9 @@ def _flaw(value: NDArray[np.float64], asymmetry: float) -> str:
             f"is singular to double precision: {shown} has the eigenvalues {low:.6g} and "
             f"{high:.6g}; keep the ratio of sizes below 1e7"
         )
+    remedy = "raise them to at least 1 / h_max**2"
+    if value.ndim == 1 and m11 > 0 and m12 > 0 and m22**2 < m11 * m12:
+        remedy += "; or, if it is in the order xx, yy, xy, pack it with order='voigt'"
     return (
-        f"is not positive definite: {shown} has the eigenvalues {low:.6g} and {high:.6g}; "
-        "raise them to at least 1 / h_max**2"
+        f"is not positive definite: {shown} has the eigenvalues {low:.6g} and {high:.6g}; {remedy}"
     )

@@ -432,3 +432,12 @@ def test_everything_scales(exponent):
     np.testing.assert_array_equal(tensor.intersect(k * s, k * t), k * tensor.intersect(s, t))
     wanted = k * tensor.geometric_mean(s, t)
     np.testing.assert_array_equal(tensor.geometric_mean(k * s, k * t), wanted)
+
+
+def test_voigt_order_is_asked_for_by_name():
+    voigt = np.array([[4.0, 9.0, 1.0]])  # xx, yy, xy
+    assert np.array_equal(tensor.pack(voigt, order="voigt"), [[4.0, 1.0, 9.0]])
+    with pytest.raises(MetricError, match=r"order='voigt'"):
+        tensor.pack(voigt)
+    with pytest.raises(ValueError, match="order='xyz'"):
+        tensor.pack(voigt, order="xyz")
