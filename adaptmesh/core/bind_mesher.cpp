@@ -156,12 +156,13 @@ class Mesher {
 
     Index swap(int most_passes) {
         nb::gil_scoped_release release;
-        return swap_everywhere(mesh_, DelaunayCriterion{}, most_passes, poll_);
+        return swap_changed(mesh_, DelaunayCriterion{}, most_passes, poll_);
     }
 
     Index swap_worst(double below) {
         nb::gil_scoped_release release;
-        return swap_everywhere(mesh_, QualityCriterion{below}, 3, poll_);
+        for (Triangle& t : mesh_.topology.triangles) t.fresh |= TO_SWAP;
+        return swap_changed(mesh_, QualityCriterion{below}, 3, poll_);
     }
 
     Index smooth() {

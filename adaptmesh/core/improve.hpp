@@ -20,15 +20,17 @@ struct MeasuredEdge {
     Index a, b;
 };
 
-// The interior edges whose length `wanted` takes.
+// The interior edges of triangles to improve, whose length `wanted` takes.
 template <typename Wanted>
 std::vector<MeasuredEdge> edges_with_length(const MetricMesh& mesh, const Wanted& wanted) {
     std::vector<MeasuredEdge> out;
     for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
-        if (mesh.topology.is_dead(t)) continue;
         const Triangle& T = mesh.triangle(t);
+        if (!(T.fresh & TO_IMPROVE) || mesh.topology.is_dead(t)) continue;
         for (int slot = 0; slot < 3; ++slot) {
-            if (is_locked(T.n[slot]) || triangle_of(T.n[slot]) > t) continue;
+            if (is_locked(T.n[slot])) continue;
+            const Index across = triangle_of(T.n[slot]);  // sees the edge too if it is to improve
+            if (across > t && (mesh.triangle(across).fresh & TO_IMPROVE)) continue;
             const Index a = T.v[next(slot)], b = T.v[prev(slot)];
             const double length = mesh.length(a, b);
             if (wanted(length)) out.push_back({length, a, b});

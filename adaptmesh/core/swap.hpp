@@ -93,20 +93,22 @@ void legalise_around(MetricMesh& mesh, Index p, std::vector<Index>& around,
     }
 }
 
-// Flips all over the mesh until (nearly) nothing changes; returns how many flips were made.
+// Flips the edges of changed triangles, and of those that the flips change, until (nearly) nothing
+// changes; returns how many flips were made.
 template <typename Criterion, typename Poll>
-Index swap_everywhere(MetricMesh& mesh, const Criterion& criterion, int most_passes, Poll& poll) {
+Index swap_changed(MetricMesh& mesh, const Criterion& criterion, int most_passes, Poll& poll) {
     Index total = 0;
     for (int pass = 0; pass < most_passes; ++pass) {
         Index flips = 0;
         const Index n = mesh.topology.triangle_count();
         for (Index t = 0; t < n; ++t) {
             if (t % 1024 == 0) poll();
-            if (mesh.topology.is_dead(t)) continue;
+            Triangle& T = mesh.topology.triangles[t];
+            if (!(T.fresh & TO_SWAP) || mesh.topology.is_dead(t)) continue;
+            T.fresh &= ~TO_SWAP;
+            // The slots of t mean other edges after a flip, which marks it for the next pass.
             for (int slot = 0; slot < 3; ++slot) {
-                // each edge once; the slots of t mean other edges after a flip
-                if (triangle_of(mesh.triangle(t).n[slot]) < t &&
-                    try_flip(mesh, {t, slot}, criterion)) {
+                if (try_flip(mesh, {t, slot}, criterion)) {
                     ++flips;
                     break;
                 }

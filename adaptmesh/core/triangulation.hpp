@@ -59,13 +59,19 @@ constexpr Index unlocked(Index code) {
 constexpr Index MAX_TRIANGLES = Index(1) << 28;
 
 // Every change of a triangle sets all bits of its `fresh`; who has looked at it clears its own.
-enum Fresh : std::uint32_t { TO_MEASURE = 1, TO_IMPROVE = 2, TO_ADVANCE = 4, CHANGED = 7 };
+enum Fresh : std::uint32_t {
+    TO_MEASURE = 1,
+    TO_IMPROVE = 2,
+    TO_ADVANCE = 4,
+    TO_SWAP = 8,
+    CHANGED = 15
+};
 
 struct Triangle {
     Index v[3];
     Index n[3];
-    std::uint32_t stamp : 29;  // visit mark of searches, see Triangulation::new_stamp
-    std::uint32_t fresh : 3;   // who has not yet seen its last change, see Fresh
+    std::uint32_t stamp : 28;  // visit mark of searches, see Triangulation::new_stamp
+    std::uint32_t fresh : 4;   // who has not yet seen its last change, see Fresh
     Index label;               // region, or a mark of the algorithm at work
 
     int slot_of_vertex(Index vertex) const { return v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2; }
@@ -359,7 +365,7 @@ class Triangulation {
 
     // A visit mark no triangle bears.
     std::uint32_t new_stamp() {
-        if (++stamp_ == std::uint32_t(1) << 29) {  // wrapped
+        if (++stamp_ == std::uint32_t(1) << 28) {  // wrapped
             for (Triangle& t : triangles) t.stamp = 0;
             stamp_ = 1;
         }

@@ -117,7 +117,8 @@ class MesherRun {
             refresh();
             swap(5);
         }
-        swap_everywhere(mesh, QualityCriterion{0.5}, 3, poll_);
+        for (Triangle& t : mesh.topology.triangles) t.fresh |= TO_SWAP;
+        swap_changed(mesh, QualityCriterion{0.5}, 3, poll_);
         const std::vector<Index> name = mesh.compact();
         for (SubEdge& e : constrained) e.a = name[e.a], e.b = name[e.b];
     }
@@ -125,7 +126,7 @@ class MesherRun {
   private:
     static constexpr Index MOST_VERTICES = 20000;
 
-    void swap(int passes) { swap_everywhere(mesh, DelaunayCriterion{}, passes, poll_); }
+    void swap(int passes) { swap_changed(mesh, DelaunayCriterion{}, passes, poll_); }
 
     std::function<Tensor(std::size_t)> at_points(std::vector<double> xy) const {
         return [this, xy](std::size_t i) { return metric_({xy[2 * i], xy[2 * i + 1]}); };
