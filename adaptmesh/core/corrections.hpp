@@ -21,6 +21,10 @@ class Corrections {
         return s.key == EMPTY ? 1.0 : s.ratio;
     }
 
+    bool knows(Index a, Index b) const {
+        return !slots_.empty() && slots_[place(key(a, b))].key != EMPTY;
+    }
+
     void set(Index a, Index b, double ratio) {
         if (2 * (used_ + 1) > slots_.size()) grow();
         Slot& s = slots_[place(key(a, b))];

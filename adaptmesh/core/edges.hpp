@@ -61,7 +61,8 @@ inline void correct_lengths(MetricMesh& mesh, const EdgesToMeasure& edges) {
         const double closed =
             MetricMesh::length(mesh.vertices[edges.a[i]], mesh.vertices[edges.b[i]]);
         const double ratio = edges.sampler.lengths()[i] / closed;
-        if (std::abs(ratio - 1) > WORTH_CORRECTING)
+        const bool is_known = mesh.corrections.knows(edges.a[i], edges.b[i]);
+        if (is_known || std::abs(ratio - 1) > WORTH_CORRECTING)
             mesh.corrections.set(edges.a[i], edges.b[i], ratio);
     }
 }
