@@ -1,4 +1,5 @@
-"""Draw the pictures of the gallery anew: run the examples and make small files of what they draw.
+"""Draw the pictures of the gallery anew: run the examples and the demo, and make small files
+of what they draw.
 
 python docs/make_pictures.py
 """
@@ -16,9 +17,10 @@ MOST_BYTES = 200_000
 
 
 def main() -> None:
-    for example in sorted((HERE.parent / "examples").glob("[0-9]*.py")):
+    commands = [[example] for example in sorted((HERE.parent / "examples").glob("[0-9]*.py"))]
+    for command in [*commands, ["-m", "adaptmesh", "demo", "--out"]]:
         with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([sys.executable, example, folder], check=True)
+            subprocess.run([sys.executable, *command, folder], check=True)
             for picture in Path(folder).glob("*.png"):
                 reduce(picture, HERE / "images" / picture.name)
 
