@@ -1,8 +1,10 @@
-"""Draw the pictures of the gallery anew: run the examples and reduce what they draw to 256 colours.
+"""Draw the pictures of the gallery anew: run the examples and the demo, and make small files
+of what they draw.
 
 python docs/make_pictures.py
 """
 
+import itertools
 import subprocess
 import sys
 import tempfile
@@ -11,22 +13,29 @@ from pathlib import Path
 from PIL import Image
 
 HERE = Path(__file__).parent
+MOST_BYTES = 200_000
 
 
 def main() -> None:
-    for example in sorted((HERE.parent / "examples").glob("[0-9]*.py")):
+    commands = [[example] for example in sorted((HERE.parent / "examples").glob("[0-9]*.py"))]
+    for command in [*commands, ["-m", "adaptmesh", "demo", "--out"]]:
         with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([sys.executable, example, folder], check=True)
+            subprocess.run([sys.executable, *command, folder], check=True)
             for picture in Path(folder).glob("*.png"):
-                reduce_colours(picture, HERE / "images" / picture.name)
+                reduce(picture, HERE / "images" / picture.name)
 
 
-def reduce_colours(picture: Path, target: Path) -> None:
-    """A third of the size, and no colour is off by more than one can see."""
+def reduce(picture: Path, target: Path) -> None:
+    """Fewer colours, and then fewer pixels, until the file is small enough."""
     image = Image.open(picture).convert("RGB")
-    method = Image.Quantize.MAXCOVERAGE
-    reduced = image.quantize(256, method=method, kmeans=3, dither=Image.Dither.NONE)
-    reduced.save(target, optimize=True)
+    for share, colours in itertools.product((1.0, 0.8, 0.6), (256, 64, 32)):
+        size = (round(share * image.width), round(share * image.height))
+        small = image.resize(size, Image.Resampling.LANCZOS)
+        method = Image.Quantize.MAXCOVERAGE
+        small = small.quantize(colours, method=method, kmeans=3, dither=Image.Dither.NONE)
+        small.save(target, optimize=True)
+        if target.stat().st_size < MOST_BYTES:
+            return
 
 
 if __name__ == "__main__":

@@ -60,7 +60,7 @@ am.plot(
     mesh,
     field,
     ellipses=True,
-    bounds=(-0.511, -0.006, -0.491, 0.006),
+    bounds=(-0.511, -0.0045, -0.496, 0.0045),
     path=out / "11_wall_layer_fields_detail.png",
     title="The nose",
 )
