@@ -268,6 +268,8 @@ def test_progress_may_stop_the_work(square):
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are not sent this way on Windows")
 def test_ctrl_c_stops_within_a_second(square):
+    # A process started in the background of a shell ignores SIGINT; here it must not.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     sent = []
 
     def interrupt():
@@ -276,8 +278,11 @@ def test_ctrl_c_stops_within_a_second(square):
         os.kill(os.getpid(), signal.SIGINT)
 
     threading.Thread(target=interrupt).start()
-    with pytest.raises(KeyboardInterrupt):
-        am.generate(square, 0.001)  # a million vertices
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            am.generate(square, 0.001)  # a million vertices
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert time.perf_counter() - sent[0] < 1
 
 
