@@ -54,6 +54,8 @@ class EdgeSampler {
     EdgeSampler(double longest_chord, double longest_edge, double uncut_below)
         : longest_chord_(longest_chord), longest_edge_(longest_edge), uncut_below_(uncut_below) {}
 
+    void reserve(std::size_t n) { edges_.reserve(n), chords_.reserve(n), lengths_.reserve(n); }
+
     void add(Point a, const Tensor& metric_a, Point b, const Tensor& metric_b) {
         const Index edge = Index(edges_.size());
         edges_.push_back({a, {b.x - a.x, b.y - a.y}});

@@ -2,6 +2,7 @@
 // metric shares, and the points that keep their distance from the mesh are put into it.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -27,6 +28,8 @@ struct EdgesToMeasure {
     EdgeSampler sampler;
     std::vector<Index> a, b;  // their ends
 
+    void reserve(std::size_t n) { sampler.reserve(n), a.reserve(n), b.reserve(n); }
+
     void add(const MetricMesh& mesh, Place edge) {
         const Triangle& T = mesh.triangle(edge.triangle);
         a.push_back(T.v[next(edge.slot)]);
@@ -42,6 +45,9 @@ inline EdgesToMeasure take_fresh_edges(MetricMesh& mesh, double to_cut) {
     const double longest = to_cut < INFINITY ? LONGEST_EDGE : LONGEST_CHORD;
     EdgesToMeasure out{EdgeSampler(LONGEST_CHORD, longest, to_cut), {}, {}};
     auto& triangles = mesh.topology.triangles;
+    const auto fresh = std::count_if(triangles.begin(), triangles.end(),
+                                     [](const Triangle& t) { return t.fresh & TO_MEASURE; });
+    out.reserve(3 * std::size_t(fresh) / 2);
     for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
         if (!(triangles[t].fresh & TO_MEASURE) || mesh.topology.is_dead(t)) continue;
         for (int slot = 0; slot < 3; ++slot) {
@@ -95,13 +101,12 @@ Index insert_along_edges(MetricMesh& mesh, const EdgesToMeasure& edges, double l
                          double spacing, Index most_vertices, Poll& poll) {
     PointInserter inserter(mesh, spacing);
     std::vector<FieldPoint> points;
-    std::vector<Place> scratch;
     Index inserted = 0;
     for (Index e = 0; e < edges.sampler.edge_count(); ++e) {
         if (e % 1024 == 0) poll();
         const double length = edges.sampler.lengths()[e];
         if (length < long_edge) continue;
-        const Place place = mesh.topology.find_edge(edges.a[e], edges.b[e], scratch);
+        const Place place = mesh.topology.find_edge(edges.a[e], edges.b[e]);
         if (place.triangle == NONE) continue;
         if (Index(mesh.vertices.size()) >= most_vertices) return NONE;
         points.clear();

@@ -132,7 +132,7 @@ class Front {
     }
 
     void consider(Edge e) {
-        const Place place = mesh_.topology.find_edge(e.a, e.b, ball_);
+        const Place place = mesh_.topology.find_edge(e.a, e.b);
         if (place.triangle == NONE) return;
         Triangle& T = mesh_.topology.triangles[place.triangle];
         if (!(T.fresh & TO_ADVANCE)) return;
@@ -183,7 +183,6 @@ class Front {
     Books books_;
     std::vector<Edge> edges_;
     std::vector<Wanted> wanted_;
-    std::vector<Place> ball_;
 };
 
 }  // namespace adaptmesh

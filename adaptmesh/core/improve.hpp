@@ -45,13 +45,12 @@ Index collapse_short_edges(MetricMesh& mesh, const CollapseOptions& options, Pol
     auto edges = edges_with_length(mesh, [&](double l) { return l < SHORTEST_UNIT; });
     std::sort(edges.begin(), edges.end(), [](auto& e, auto& f) { return e.length < f.length; });
     Collapser collapser(mesh, options);
-    std::vector<Place> scratch;
     Index collapsed = 0, tried = 0;
     for (const MeasuredEdge& e : edges) {
         if (++tried % 1024 == 0) poll();
         if (mesh.topology.triangle_at(e.a) == NONE || mesh.topology.triangle_at(e.b) == NONE)
             continue;
-        if (mesh.topology.find_edge(e.a, e.b, scratch).triangle == NONE) continue;
+        if (mesh.topology.find_edge(e.a, e.b).triangle == NONE) continue;
         collapsed += collapser.try_collapse(e.a, e.b) || collapser.try_collapse(e.b, e.a);
     }
     return collapsed;
@@ -63,11 +62,10 @@ Index split_long_edges(MetricMesh& mesh, const SplitOptions& options, Poll& poll
     auto edges = edges_with_length(mesh, [&](double l) { return l > LONGEST_UNIT; });
     std::sort(edges.begin(), edges.end(), [](auto& e, auto& f) { return e.length > f.length; });
     Splitter splitter(mesh, options);
-    std::vector<Place> scratch;
     Index split = 0, tried = 0;
     for (const MeasuredEdge& e : edges) {
         if (++tried % 1024 == 0) poll();
-        const Place place = mesh.topology.find_edge(e.a, e.b, scratch);
+        const Place place = mesh.topology.find_edge(e.a, e.b);
         if (place.triangle != NONE) split += splitter.try_split(place, e.length);
     }
     return split;

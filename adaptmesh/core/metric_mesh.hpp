@@ -131,10 +131,21 @@ class MetricMesh {
     //
     // `margin`, relative to the size of the terms, keeps ties apart.
     static bool in_circle(const Tensor& m, Point a, Point b, Point c, Point d, double margin) {
-        const double l11 = std::sqrt(m.a), l21 = m.b / l11, l22 = metrics::sqrt_det(m) / l11;
+        return in_circle(Frame(m), a, b, c, d, margin);
+    }
+
+    // L' of a metric m = L L'.
+    struct Frame {
+        double l11, l21, l22;
+        explicit Frame(const Tensor& m) : Frame(m, metrics::sqrt_det(m)) {}
+        Frame(const Tensor& m, double root)
+            : l11(std::sqrt(m.a)), l21(m.b / l11), l22(root / l11) {}
+    };
+
+    static bool in_circle(const Frame& f, Point a, Point b, Point c, Point d, double margin) {
         const auto image = [&](Point p) {
             const double dx = p.x - d.x, dy = p.y - d.y;
-            return Point{l11 * dx + l21 * dy, l22 * dy};
+            return Point{f.l11 * dx + f.l21 * dy, f.l22 * dy};
         };
         const Point u = image(a), v = image(b), w = image(c);
         const double tu = (u.x * u.x + u.y * u.y) * (v.x * w.y - v.y * w.x);

@@ -65,8 +65,8 @@ class OutlineCutter {
     };
 
     Index split(const Span& span, const Vertex& cut) {
-        Place place = mesh_.topology.find_edge(span.a, span.b, scratch_);
-        if (place.triangle == NONE) place = mesh_.topology.find_edge(span.b, span.a, scratch_);
+        Place place = mesh_.topology.find_edge(span.a, span.b);
+        if (place.triangle == NONE) place = mesh_.topology.find_edge(span.b, span.a);
         if (place.triangle == NONE || !leaves_positive(place, cut.at)) return NONE;
         const Index across = mesh_.triangle(place.triangle).n[place.slot];
         if (across != NONE && !leaves_positive({triangle_of(across), slot_of(across)}, cut.at))
@@ -92,7 +92,6 @@ class OutlineCutter {
 
     MetricMesh& mesh_;
     std::vector<Span> spans_;
-    std::vector<Place> scratch_;
     std::vector<Index> around_;
 };
 

@@ -52,6 +52,10 @@ class PointInserter {
     bool has_room(const Vertex& p, Index home) {
         auto& triangles = mesh_.topology.triangles;
         const std::uint32_t stamp = mesh_.topology.new_stamp();
+        const MetricMesh::Frame frame(p.metric, p.sqrt_det);
+        for (Index v : triangles[home].v) {
+            if (MetricMesh::length(p, mesh_.vertices[v]) < spacing_) return false;
+        }
         cavity_.assign(1, home);
         triangles[home].stamp = stamp;
         double area = 0;
@@ -59,14 +63,16 @@ class PointInserter {
             const Triangle& T = triangles[cavity_[i]];
             area += mesh_.euclidean_area(cavity_[i]);
             for (int slot = 0; slot < 3; ++slot) {
-                if (MetricMesh::length(p, mesh_.vertices[T.v[slot]]) < spacing_) return false;
                 if (is_locked(T.n[slot])) continue;
                 Triangle& U = triangles[triangle_of(T.n[slot])];
                 if (U.stamp == stamp) continue;
                 U.stamp = stamp;
-                if (MetricMesh::in_circle(p.metric, mesh_.at(U.v[0]), mesh_.at(U.v[1]),
-                                          mesh_.at(U.v[2]), p.at, 0.0))
+                if (MetricMesh::in_circle(frame, mesh_.at(U.v[0]), mesh_.at(U.v[1]),
+                                          mesh_.at(U.v[2]), p.at, 0.0)) {
+                    const Index apex = U.v[slot_of(T.n[slot])];
+                    if (MetricMesh::length(p, mesh_.vertices[apex]) < spacing_) return false;
                     cavity_.push_back(triangle_of(T.n[slot]));
+                }
             }
         }
         return area * p.sqrt_det >= LEAST_AREA * double(cavity_.size() + 2);

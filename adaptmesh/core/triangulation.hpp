@@ -272,44 +272,38 @@ class Triangulation {
     //   turning counter-clockwise about v leaves a triangle by the edge to its prev vertex, which
     //   is opposite next(slot); clockwise by the edge opposite prev(slot).
     bool ball(Index vertex, std::vector<Place>& places) const {
-        places.clear();
         const Index home = triangle_at(vertex);
-        Index start = home;
-        bool closed = true;
-        for (Index k = home;;) {
-            const Triangle& T = triangles[k];
+        if (turn_around(vertex, home, places)) return true;
+        Index start = home;  // the border was met: begin again at its other end
+        while (true) {
+            const Triangle& T = triangles[start];
             const Index code = T.n[prev(T.slot_of_vertex(vertex))];
-            if (code == NONE) {
-                closed = false;
-                start = k;
-                break;
-            }
-            k = triangle_of(code);
-            if (k == home) break;
-        }
-        for (Index k = start;;) {
-            const Triangle& T = triangles[k];
-            const int i = T.slot_of_vertex(vertex);
-            places.push_back({k, i});
-            const Index code = T.n[next(i)];
             if (code == NONE) break;
-            k = triangle_of(code);
-            if (k == start) break;
+            start = triangle_of(code);
         }
-        return closed;
+        turn_around(vertex, start, places);
+        return false;
     }
 
     // The edge from a to b as an edge of the triangle on its left; triangle NONE if there is none.
-    // Asked from both ends, as where parts of the triangulation touch in a vertex, its ball is but
-    // one of them.
-    Place find_edge(Index a, Index b, std::vector<Place>& scratch) const {
-        ball(a, scratch);
-        for (Place p : scratch) {
-            if (triangles[p.triangle].v[next(p.slot)] == b) return {p.triangle, prev(p.slot)};
-        }
-        ball(b, scratch);
-        for (Place p : scratch) {
-            if (triangles[p.triangle].v[prev(p.slot)] == a) return {p.triangle, next(p.slot)};
+    // Looked for around both ends: where parts of the triangulation touch in a vertex, turning
+    // around it meets but one of them.
+    Place find_edge(Index a, Index b) const {
+        const auto is_wanted = [&](const Triangle& T, int i, int j) {
+            return T.v[i] == a && T.v[j] == b;
+        };
+        for (const Index vertex : {a, b}) {
+            const Index home = triangle_at(vertex);
+            for (const bool clockwise : {false, true}) {
+                for (Index k = home; k != NONE;) {
+                    const Triangle& T = triangles[k];
+                    const int i = T.slot_of_vertex(vertex);
+                    if (is_wanted(T, i, next(i))) return {k, prev(i)};
+                    if (is_wanted(T, prev(i), i)) return {k, next(i)};
+                    k = triangle_of(T.n[clockwise ? prev(i) : next(i)]);
+                    if (k == home) break;
+                }
+            }
         }
         return {NONE, 0};
     }
@@ -373,6 +367,21 @@ class Triangulation {
     }
 
   private:
+    // The triangles around a vertex counter-clockwise from one of them; false if that ends at the
+    // border.
+    bool turn_around(Index vertex, Index start, std::vector<Place>& places) const {
+        places.clear();
+        for (Index k = start;;) {
+            const Triangle& T = triangles[k];
+            const int i = T.slot_of_vertex(vertex);
+            places.push_back({k, i});
+            const Index code = T.n[next(i)];
+            if (code == NONE) return false;
+            k = triangle_of(code);
+            if (k == start) return true;
+        }
+    }
+
     // Two triangles become neighbours across the edges with these codes, each as its own triangle
     // sees the other: code g is the edge of triangle_of(g) that faced what is now gone.
     void join(Index g, Index h) {

@@ -188,11 +188,10 @@ void run_mesher(const Input& input) {
         Input result{input.name + ", meshed", {}, {}, {}};
         for (const Vertex& v : run.mesh.vertices) result.points.push_back(v.at);
         check_mesh(run.mesh.topology, result);
-        std::vector<Place> scratch;
         for (const SubEdge& e : run.constrained) {
             const auto& topology = run.mesh.topology;
-            Place place = topology.find_edge(e.a, e.b, scratch);
-            if (place.triangle == NONE) place = topology.find_edge(e.b, e.a, scratch);
+            Place place = topology.find_edge(e.a, e.b);
+            if (place.triangle == NONE) place = topology.find_edge(e.b, e.a);
             require(place.triangle != NONE, result, "constrained edges are edges");
             require(is_locked(topology.triangles[place.triangle].n[place.slot]), result,
                     "constrained edges are locked");
