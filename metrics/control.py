@@ -53,6 +53,21 @@ class ControlSpace(ABC):
     def __rand__(self, other: Metric) -> ControlSpace:
         return Intersection(as_control_space(other), self)
 
+    def __or__(self, other: Metric) -> ControlSpace:
+        """The union: everywhere as long a step as either allows."""
+        return Union(self, as_control_space(other))
+
+    def __ror__(self, other: Metric) -> ControlSpace:
+        return Union(as_control_space(other), self)
+
+    def mean(self, other: Metric, weight: float = 0.5) -> ControlSpace:
+        """The log-Euclidean mean with another field, which counts for `weight` from 0 to 1."""
+        return Mean(self, as_control_space(other), weight)
+
+    def geometric_mean(self, other: Metric) -> ControlSpace:
+        """The geometric mean A#B with another field, see `metrics.tensor.geometric_mean`."""
+        return GeometricMean(self, as_control_space(other))
+
     def scaled(self, factor: float) -> ControlSpace:
         """The same field with every size multiplied by `factor`: 2 gives a mesh twice as coarse."""
         return Scaled(self, factor)
@@ -139,17 +154,59 @@ class Function(ControlSpace):
         return f"{name} ({code.co_filename}:{code.co_firstlineno})" if code else name
 
 
-class Intersection(ControlSpace):
-    """Nowhere a longer step than either of two fields allows."""
+class Pair(ControlSpace):
+    """Two fields made one, point by point; `sign` stands between them when it is printed."""
+
+    sign: str
 
     def __init__(self, first: ControlSpace, second: ControlSpace) -> None:
         self.first, self.second = first, second
 
+    def __repr__(self) -> str:
+        return f"{self.first!r} {self.sign} {self.second!r}"
+
+
+class Intersection(Pair):
+    """Nowhere a longer step than either of two fields allows."""
+
+    sign = "&"
+
     def values(self, points: Floats) -> ArrayLike:
         return tensor.intersect(self.first(points), self.second(points))
 
-    def __repr__(self) -> str:
-        return f"{self.first!r} & {self.second!r}"
+
+class Union(Pair):
+    """Everywhere as long a step as either of two fields allows."""
+
+    sign = "|"
+
+    def values(self, points: Floats) -> ArrayLike:
+        return tensor.union(self.first(points), self.second(points))
+
+
+class GeometricMean(Pair):
+    """Half way from one field to another, on the geodesic of the metrics."""
+
+    sign = "#"
+
+    def values(self, points: Floats) -> ArrayLike:
+        return tensor.geometric_mean(self.first(points), self.second(points))
+
+
+class Mean(Pair):
+    """The log-Euclidean mean of two fields."""
+
+    sign = "~"
+
+    def __init__(self, first: ControlSpace, second: ControlSpace, weight: float) -> None:
+        super().__init__(first, second)
+        if not 0 <= weight <= 1:
+            raise MetricError(f"the weight of the second field is between 0 and 1, not {weight!r}")
+        self.weight = float(weight)
+
+    def values(self, points: Floats) -> ArrayLike:
+        first, second = tensor.log(self.first(points)), tensor.log(self.second(points))
+        return tensor.exp((1 - self.weight) * first + self.weight * second)
 
 
 class Scaled(ControlSpace):

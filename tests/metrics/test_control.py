@@ -224,3 +224,27 @@ def test_a_field_of_ones_own_is_checked_too():
 def test_repr_says_how_a_field_is_made():
     field = (as_control_space(0.5) & metrics.Expression("x")).scaled(2).limited(h_max=1)
     assert repr(field) == "((Uniform(0.5) & Expression('x')).scaled(2.0)).limited(0.0, 1.0)"
+
+
+def test_union_is_everywhere_the_longer_step():
+    field = as_control_space(size) | 0.4
+    np.testing.assert_allclose(tensor.sizes(field(POINTS))[:, 0], np.maximum(size(POINTS), 0.4))
+    assert repr(0.4 | as_control_space(0.2)) == "Uniform(0.4) | Uniform(0.2)"
+
+
+def test_means_of_sizes_are_geometric():
+    field = as_control_space(size)
+    halfway = np.sqrt(0.4 * size(POINTS))
+    np.testing.assert_allclose(tensor.sizes(field.mean(0.4)(POINTS))[:, 0], halfway)
+    np.testing.assert_allclose(tensor.sizes(field.geometric_mean(0.4)(POINTS))[:, 0], halfway)
+    third = 0.4**0.25 * size(POINTS) ** 0.75
+    np.testing.assert_allclose(tensor.sizes(field.mean(0.4, 0.25)(POINTS))[:, 0], third)
+
+
+def test_means_lie_between_the_fields_and_agree_where_these_commute():
+    field = as_control_space(wall)
+    one, other = field.mean(0.3)(POINTS), field.geometric_mean(0.3)(POINTS)
+    np.testing.assert_allclose(one, other, rtol=1e-12)
+    np.testing.assert_allclose(field.mean(0.3, 0.0)(POINTS), field(POINTS), rtol=1e-12)
+    with pytest.raises(MetricError, match="between 0 and 1"):
+        field.mean(0.3, 1.5)
