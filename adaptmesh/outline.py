@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from . import _core
 from .domain import Domain
 from .errors import DomainError
+from .invariants.subject import edge_keys
 from .mesh import Mesh
 
 Floats = NDArray[np.float64]
@@ -75,10 +76,8 @@ def _with_border(mesh: Mesh) -> tuple[Ints, Ints]:
     """The constrained edges and their tags; other border edges come with tag 0."""
     n = len(mesh.points)
     halves, _ = _half_edges(mesh.triangles)
-    ordered = np.sort(halves, axis=1).astype(np.int64)
-    keys, count = np.unique(ordered[:, 0] * n + ordered[:, 1], return_counts=True)
-    given = np.sort(mesh.edges, axis=1).astype(np.int64)
-    missing = np.setdiff1d(keys[count == 1], given[:, 0] * n + given[:, 1])
+    keys, count = np.unique(edge_keys(halves[:, 0], halves[:, 1], n), return_counts=True)
+    missing = np.setdiff1d(keys[count == 1], edge_keys(mesh.edges[:, 0], mesh.edges[:, 1], n))
     border = np.stack([missing // n, missing % n], axis=1).astype(np.int32)
     return (
         np.concatenate([mesh.edges, border]),
@@ -163,13 +162,13 @@ def _hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
     from scipy.sparse.csgraph import connected_components
 
     filled, *_ = _core.triangulate(points, segments, np.empty((0, 2)), np.empty((0, 2)), False)
-    lower, upper = np.sort(segments, axis=1).T.astype(np.int64)
     halves, owner = _half_edges(filled)
-    ordered = np.sort(halves, axis=1).astype(np.int64)
-    keys = ordered[:, 0] * len(points) + ordered[:, 1]
+    keys = edge_keys(halves[:, 0], halves[:, 1], len(points))
     order = np.argsort(keys, kind="stable")
     same = np.flatnonzero(keys[order][:-1] == keys[order][1:])
-    open_ = same[~np.isin(keys[order][same], lower * len(points) + upper)]
+    open_ = same[
+        ~np.isin(keys[order][same], edge_keys(segments[:, 0], segments[:, 1], len(points)))
+    ]
     links = owner[order][open_], owner[order][open_ + 1]
     graph = coo_array((np.ones(len(open_)), links), shape=(len(filled), len(filled)))
     _, part = connected_components(graph, directed=False)
@@ -204,10 +203,9 @@ def _region_points(mesh: Mesh, edges: Ints) -> dict[str, Floats]:
 
     left, right = _triangles_beside(mesh.triangles, mesh.unique_edges, len(mesh.points))
     n = len(mesh.points)
-    constrained = np.sort(edges, axis=1).astype(np.int64)
-    all_edges = mesh.unique_edges.astype(np.int64)
     free = ~np.isin(
-        all_edges[:, 0] * n + all_edges[:, 1], constrained[:, 0] * n + constrained[:, 1]
+        edge_keys(mesh.unique_edges[:, 0], mesh.unique_edges[:, 1], n),
+        edge_keys(edges[:, 0], edges[:, 1], n),
     )
     free &= (left >= 0) & (right >= 0)
     m = len(mesh.triangles)

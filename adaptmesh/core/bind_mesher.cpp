@@ -17,18 +17,6 @@ Tensor tensor_in(const Tensors& array, std::size_t i) {
     return {array(i, 0), array(i, 1), array(i, 2)};
 }
 
-std::vector<Point> points_in(const Points& array) {
-    std::vector<Point> out(array.shape(0));
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {array(i, 0), array(i, 1)};
-    return out;
-}
-
-std::vector<Segment> segments_in(const IndexPairs& array) {
-    std::vector<Segment> out(array.shape(0));
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {array(i, 0), array(i, 1)};
-    return out;
-}
-
 void expect_rows(std::size_t got, std::size_t wanted, const char* what) {
     if (got != wanted) {
         throw nb::value_error((std::string(what) + ": " + std::to_string(got) + " rows, expected " +
@@ -85,9 +73,9 @@ class Mesher {
            const Points& holes, const Points& seeds, bool nesting) {
         const std::size_t n = points.shape(0);
         expect_rows(tensors.shape(0), n, "tensors");
-        const std::vector<Point> at = points_in(points);
-        const std::vector<Segment> lines = segments_in(segments);
-        const CarveOptions options{points_in(holes), points_in(seeds), nesting};
+        const std::vector<Point> at = to_points(points);
+        const std::vector<Segment> lines = to_segments(segments);
+        const CarveOptions options{to_points(holes), to_points(seeds), nesting};
 
         nb::gil_scoped_release release;
         mesh_.topology = triangulate(at, lines, options, poll_).triangulation;
@@ -148,7 +136,7 @@ class Mesher {
     Index insert_where_finer(const Points& points, const Tensors& tensors, double ratio,
                              double spacing) {
         expect_rows(tensors.shape(0), points.shape(0), "tensors");
-        const std::vector<Point> at = points_in(points);
+        const std::vector<Point> at = to_points(points);
         nb::gil_scoped_release release;
         return adaptmesh::insert_where_finer(
             mesh_, at, [&](std::size_t i) { return tensor_in(tensors, i); }, ratio, spacing, poll_);

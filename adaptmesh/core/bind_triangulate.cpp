@@ -1,20 +1,11 @@
 #include <nanobind/stl/string.h>
 
-#include <cstring>
-
 #include "adaptmesh/core/bindings.hpp"
 #include "adaptmesh/core/triangulate.hpp"
 
 namespace {
 
 using namespace adaptmesh;
-
-std::vector<Point> to_points(const Points& array) {
-    static_assert(sizeof(Point) == 2 * sizeof(double));
-    std::vector<Point> points(array.shape(0));
-    if (!points.empty()) std::memcpy(points.data(), array.data(), points.size() * sizeof(Point));
-    return points;
-}
 
 nb::tuple delaunay_arrays(const Points& array) {
     const std::vector<Point> points = to_points(array);
@@ -36,10 +27,7 @@ nb::tuple delaunay_arrays(const Points& array) {
 nb::tuple triangulate_arrays(const Points& points_in, const IndexPairs& segments_in,
                              const Points& holes, const Points& seeds, bool nesting) {
     const std::vector<Point> points = to_points(points_in);
-    std::vector<Segment> segments(segments_in.shape(0));
-    for (std::size_t k = 0; k < segments.size(); ++k) {
-        segments[k] = {segments_in(k, 0), segments_in(k, 1)};
-    }
+    const std::vector<Segment> segments = to_segments(segments_in);
     const CarveOptions options{to_points(holes), to_points(seeds), nesting};
 
     std::vector<Index> corners, labels, ends, segment_of;

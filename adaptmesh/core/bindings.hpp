@@ -6,8 +6,12 @@
 
 #include <chrono>
 #include <cstdint>
+#include <cstring>
 #include <utility>
 #include <vector>
+
+#include "adaptmesh/core/constrain.hpp"
+#include "adaptmesh/core/point.hpp"
 
 namespace nb = nanobind;
 
@@ -20,6 +24,21 @@ using Points = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::dev
 using Tensors = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using IndexPairs = nb::ndarray<const std::int32_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Indices = nb::ndarray<const std::int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+
+inline std::vector<adaptmesh::Point> to_points(const Points& array) {
+    static_assert(sizeof(adaptmesh::Point) == 2 * sizeof(double));
+    std::vector<adaptmesh::Point> points(array.shape(0));
+    if (!points.empty()) {
+        std::memcpy(points.data(), array.data(), points.size() * sizeof(adaptmesh::Point));
+    }
+    return points;
+}
+
+inline std::vector<adaptmesh::Segment> to_segments(const IndexPairs& array) {
+    std::vector<adaptmesh::Segment> segments(array.shape(0));
+    for (std::size_t i = 0; i < segments.size(); ++i) segments[i] = {array(i, 0), array(i, 1)};
+    return segments;
+}
 
 // A numpy array that owns `values`; no copy.
 template <typename T>

@@ -93,9 +93,9 @@ Index insert_where_finer(MetricMesh& mesh, const std::vector<Point>& points, Ten
 }
 
 // Puts field points into the mesh along the measured edges from length `long_edge` on, up to
-// `most_vertices` in all; returns how many it took, or NONE
-// if there is no room. An edge that the points of others have made
-// vanish is passed over: what took its place is measured in the next sweep.
+// `most_vertices` in all; returns how many it took, or NONE if there is no room. An edge that the
+// points of others have made vanish is passed over: what took its place is measured in the next
+// sweep.
 template <typename Poll>
 Index insert_along_edges(MetricMesh& mesh, const EdgesToMeasure& edges, double long_edge,
                          double spacing, Index most_vertices, Poll& poll) {
@@ -112,8 +112,11 @@ Index insert_along_edges(MetricMesh& mesh, const EdgesToMeasure& edges, double l
         points.clear();
         edges.sampler.cut(e, Index(unit_parts(std::min(length, LONGEST_EDGE))), points);
         Index near = place.triangle;
-        for (const FieldPoint& p : points)
-            inserted += inserter.insert(p.at, p.metric, near) == PointInserter::Outcome::inserted;
+        for (const FieldPoint& p : points) {
+            if (inserter.insert(p.at, p.metric, near) != PointInserter::Outcome::inserted) continue;
+            mesh.stale.push_back(Index(mesh.vertices.size()) - 1);
+            ++inserted;
+        }
     }
     return inserted;
 }

@@ -123,12 +123,10 @@ class Front {
         double made_ = 0, worth_ = 0;
     };
 
-    double metric_area(const Triangle& T) const {
-        const Vertex &a = mesh_.vertices[T.v[0]], &b = mesh_.vertices[T.v[1]];
-        const Vertex& c = mesh_.vertices[T.v[2]];
-        const double ux = b.at.x - a.at.x, uy = b.at.y - a.at.y;
-        const double vx = c.at.x - a.at.x, vy = c.at.y - a.at.y;
-        return 0.5 * (ux * vy - uy * vx) * (a.sqrt_det + b.sqrt_det + c.sqrt_det) / 3;
+    double metric_area(Index t) const {
+        double density = 0;
+        for (Index v : mesh_.triangle(t).v) density += mesh_.vertices[v].sqrt_det;
+        return mesh_.euclidean_area(t) * density / 3;
     }
 
     void consider(Edge e) {
@@ -139,7 +137,7 @@ class Front {
         const Index c = T.v[place.slot];
         if (mesh_.length(e.b, c) < options_.accept && mesh_.length(c, e.a) < options_.accept) {
             T.fresh &= ~TO_ADVANCE;
-            books_.enter(metric_area(T));
+            books_.enter(metric_area(place.triangle));
             edges_.push_back({c, e.b});
             edges_.push_back({e.a, c});
             return;

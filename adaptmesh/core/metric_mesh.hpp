@@ -56,12 +56,9 @@ class MetricMesh {
     Corrections corrections;
     std::vector<Index> stale;  // vertices whose metric is interpolated and wants to be evaluated
 
-    // The new vertex is free, and stale.
     Index add_vertex(const Vertex& vertex) {
-        const Index v = topology.add_vertex();
         vertices.push_back(vertex);
-        stale.push_back(v);
-        return v;
+        return topology.add_vertex();
     }
 
     // Puts a vertex elsewhere in its ball, with the metric interpolated there.
@@ -118,6 +115,14 @@ class MetricMesh {
         const Triangle& T = triangle(t);
         const Point a = at(T.v[0]), b = at(T.v[1]), c = at(T.v[2]);
         return 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    }
+
+    // Whether the two triangles that a vertex at p on an edge makes of this one are positive.
+    bool stays_positive(Place edge, Point p) const {
+        const Triangle& T = triangle(edge.triangle);
+        const Point a = at(T.v[edge.slot]), b = at(T.v[next(edge.slot)]);
+        const Point c = at(T.v[prev(edge.slot)]);
+        return orient2d(a, b, p) > 0 && orient2d(a, p, c) > 0;
     }
 
     bool is_positive(Index a, Index b, Index c) const { return orient2d(at(a), at(b), at(c)) > 0; }

@@ -56,8 +56,8 @@ class OutlineCutter {
     }
 
   private:
-    // The part of a piece between two vertices, and the cuts that belong there: first, ..., last
-    // - 1.
+    // The part of a piece between two vertices, and the cuts that belong there: from `first` on,
+    // `last` not included.
     struct Span {
         std::size_t piece;
         Index a, b;
@@ -67,27 +67,11 @@ class OutlineCutter {
     Index split(const Span& span, const Vertex& cut) {
         Place place = mesh_.topology.find_edge(span.a, span.b);
         if (place.triangle == NONE) place = mesh_.topology.find_edge(span.b, span.a);
-        if (place.triangle == NONE || !leaves_positive(place, cut.at)) return NONE;
+        if (place.triangle == NONE || !mesh_.stays_positive(place, cut.at)) return NONE;
         const Index across = mesh_.triangle(place.triangle).n[place.slot];
-        if (across != NONE && !leaves_positive({triangle_of(across), slot_of(across)}, cut.at))
+        if (across != NONE && !mesh_.stays_positive({triangle_of(across), slot_of(across)}, cut.at))
             return NONE;
-
-        const Index v = mesh_.topology.add_vertex();
-        mesh_.vertices.push_back(cut);
-        around_.assign({place.triangle});
-        if (across != NONE) around_.push_back(triangle_of(across));
-        for (Index t : mesh_.topology.split_edge(place, v)) {
-            if (t != NONE) around_.push_back(t);
-        }
-        legalise_around(mesh_, v, around_, DelaunayCriterion{});
-        return v;
-    }
-
-    bool leaves_positive(Place edge, Point p) const {
-        const Triangle& T = mesh_.triangle(edge.triangle);
-        const Point a = mesh_.at(T.v[edge.slot]);
-        const Point b = mesh_.at(T.v[next(edge.slot)]), c = mesh_.at(T.v[prev(edge.slot)]);
-        return orient2d(a, b, p) > 0 && orient2d(a, p, c) > 0;
+        return put_on_edge(mesh_, place, cut, around_);
     }
 
     MetricMesh& mesh_;

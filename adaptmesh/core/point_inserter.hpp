@@ -31,17 +31,14 @@ class PointInserter {
         const Vertex p = Vertex::make(at, metric);
         if (!has_room(p, place.triangle)) return Outcome::too_near;
 
-        const Index v = mesh_.add_vertex(p);
-        around_.clear();
-        around_.push_back(place.triangle);
         if (on_edge) {
-            const Index across = triangle_of(mesh_.triangle(place.triangle).n[place.slot]);
-            for (Index t : mesh_.topology.split_edge(place, v)) around_.push_back(t);
-            around_.push_back(across);
+            put_on_edge(mesh_, place, p, around_);
         } else {
-            for (Index t : mesh_.topology.split_triangle(place.triangle, v)) around_.push_back(t);
+            const Index v = mesh_.add_vertex(p);
+            const auto added = mesh_.topology.split_triangle(place.triangle, v);
+            around_.assign({place.triangle, added[0], added[1]});
+            legalise_around(mesh_, v, around_, DelaunayCriterion{});
         }
-        legalise_around(mesh_, v, around_, DelaunayCriterion{});
         return Outcome::inserted;
     }
 

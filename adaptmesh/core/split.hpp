@@ -31,22 +31,18 @@ class Splitter {
             ratio_to_unit(inherited_length(p, a, q.a, q)) >= now_off ||
             ratio_to_unit(inherited_length(p, d, q.d, q)) >= now_off)
             return false;
-        const Index u = triangle_of(mesh_.triangle(edge.triangle).n[edge.slot]);
-        const double area = mesh_.euclidean_area(edge.triangle) + mesh_.euclidean_area(u);
+        const Index across = mesh_.triangle(edge.triangle).n[edge.slot];
+        const Place far{triangle_of(across), slot_of(across)};
+        const double area =
+            mesh_.euclidean_area(edge.triangle) + mesh_.euclidean_area(far.triangle);
         if (area * p.sqrt_det < 4 * LEAST_AREA) return false;
         const double then =
             std::min(std::min(MetricMesh::quality(a, b, p), MetricMesh::quality(a, p, c)),
                      std::min(MetricMesh::quality(d, c, p), MetricMesh::quality(d, p, b)));
         const double now = std::min(MetricMesh::quality(a, b, c), MetricMesh::quality(d, c, b));
         if (then < options_.good_quality && then < options_.quality_kept * now) return false;
-        if (orient2d(a.at, b.at, p.at) <= 0 || orient2d(a.at, p.at, c.at) <= 0 ||
-            orient2d(d.at, c.at, p.at) <= 0 || orient2d(d.at, p.at, b.at) <= 0)
-            return false;
-
-        const Index v = mesh_.add_vertex(p);
-        const auto added = mesh_.topology.split_edge(edge, v);
-        around_.assign({edge.triangle, u, added[0], added[1]});
-        legalise_around(mesh_, v, around_, DelaunayCriterion{});
+        if (!mesh_.stays_positive(edge, p.at) || !mesh_.stays_positive(far, p.at)) return false;
+        mesh_.stale.push_back(put_on_edge(mesh_, edge, p, around_));
         return true;
     }
 
@@ -57,8 +53,8 @@ class Splitter {
         return std::sqrt(ratio) * MetricMesh::length(p, opposite);
     }
 
-    // Half way in the metric, the size taken to be geometric along the edge: log((1 + r) / 2) / log
-    // r with r the ratio of the speeds at its ends.
+    // Half way in the metric, the size taken to be geometric along the edge: at
+    // log((1 + r) / 2) / log r, with r the ratio of the speeds at its ends.
     static Vertex middle(const Vertex& b, const Vertex& c) {
         const double dx = c.at.x - b.at.x, dy = c.at.y - b.at.y;
         const double r = std::sqrt(c.metric.q(dx, dy) / b.metric.q(dx, dy));

@@ -93,6 +93,18 @@ void legalise_around(MetricMesh& mesh, Index p, std::vector<Index>& around,
     }
 }
 
+// Puts a vertex on an edge, and flips around it; returns its number. `around` is scratch.
+inline Index put_on_edge(MetricMesh& mesh, Place edge, const Vertex& vertex,
+                         std::vector<Index>& around) {
+    const Index across = mesh.triangle(edge.triangle).n[edge.slot];
+    const Index v = mesh.add_vertex(vertex);
+    const auto added = mesh.topology.split_edge(edge, v);
+    around.assign({edge.triangle, added[0]});
+    if (across != NONE) around.insert(around.end(), {triangle_of(across), added[1]});
+    legalise_around(mesh, v, around, DelaunayCriterion{});
+    return v;
+}
+
 // Flips the edges of changed triangles, and of those that the flips change, until (nearly) nothing
 // changes; returns how many flips were made.
 template <typename Criterion, typename Poll>

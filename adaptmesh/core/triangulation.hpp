@@ -51,9 +51,6 @@ constexpr int slot_of(Index code) {
 constexpr bool is_locked(Index code) {
     return (code & LOCK_BIT) != 0;
 }
-constexpr Index unlocked(Index code) {
-    return code & ~LOCK_BIT;
-}
 
 // 2^28 triangles: what an edge code of 31 bits can number.
 constexpr Index MAX_TRIANGLES = Index(1) << 28;

@@ -6,31 +6,6 @@ import pytest
 import adaptmesh as am
 
 
-@pytest.fixture
-def plate():
-    points = [
-        (0, 0),
-        (4, 0),
-        (4, 2),
-        (0, 2),
-        (2, 0),
-        (2, 2),
-        (0.5, 0.5),
-        (1, 0.5),
-        (1, 1),
-        (0.5, 1),
-    ]
-    segments = [(0, 4), (4, 1), (1, 2), (2, 5), (5, 3), (3, 0), (4, 5)]
-    segments += [(6, 7), (7, 8), (8, 9), (9, 6)]
-    return am.Domain(
-        points,
-        segments,
-        holes=[(0.75, 0.75)],
-        regions={"left": (0.1, 0.1), "right": (3, 1)},
-        names={"bottom": [0, 1], "interface": [6], "hole": [7, 8, 9, 10]},
-    )
-
-
 def sizes(x):
     return 0.02 + 0.1 * abs(x[:, 0] - 1.5)
 

@@ -93,32 +93,11 @@ def test_threads_make_the_same_meshes_as_alone(square):
         assert np.array_equal(mesh.points, together[name].points)
 
 
-def test_corners_holes_regions_and_names_are_kept():
-    points = [
-        (0, 0),
-        (4, 0),
-        (4, 2),
-        (0, 2),
-        (2, 0),
-        (2, 2),
-        (0.5, 0.5),
-        (1, 0.5),
-        (1, 1),
-        (0.5, 1),
-    ]
-    segments = [(0, 4), (4, 1), (1, 2), (2, 5), (5, 3), (3, 0), (4, 5)]
-    segments += [(6, 7), (7, 8), (8, 9), (9, 6)]
-    domain = am.Domain(
-        points,
-        segments,
-        holes=[(0.75, 0.75)],
-        regions={"left": (0.1, 0.1), "right": (3, 1)},
-        names={"bottom": [0, 1], "interface": [6], "hole": [7, 8, 9, 10]},
-    )
-    mesh = am.generate(domain, 0.2)
+def test_corners_holes_regions_and_names_are_kept(plate):
+    mesh = am.generate(plate, 0.2)
     assert am.validate(mesh), am.validate(mesh)
     assert mesh.areas.sum() == pytest.approx(8 - 0.25, abs=1e-12)
-    assert {tuple(p) for p in points} <= {tuple(p) for p in mesh.points}
+    assert {tuple(p) for p in plate.points} <= {tuple(p) for p in mesh.points}
 
     def length(name):
         p = mesh.points[mesh.edges_named(name)]
