@@ -11,12 +11,20 @@ except ImportError as error:
 from .adapt import adapt
 from .domain import Domain
 from .domain_io import read_domain
-from .errors import AdaptmeshError, BudgetError, DomainError, FormatError, MetricError
+from .errors import (
+    AdaptmeshError,
+    BudgetError,
+    DomainError,
+    FormatError,
+    MetricError,
+    TransferError,
+)
 from .generate import generate, predict
 from .io import read, read_fields, read_sol, write, write_sol
 from .mesh import Mesh
 from .plot import plot
 from .report import Report, measure
+from .transfer import transfer
 from .triangulate import delaunay
 from .validate import Validity, validate
 
@@ -31,6 +39,7 @@ __all__ = [
     "Mesh",
     "MetricError",
     "Report",
+    "TransferError",
     "Validity",
     "adapt",
     "delaunay",
@@ -42,6 +51,7 @@ __all__ = [
     "read_domain",
     "read_fields",
     "read_sol",
+    "transfer",
     "validate",
     "write",
     "write_sol",

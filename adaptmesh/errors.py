@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from metrics.errors import AdaptmeshError, MetricError
 
-__all__ = ["AdaptmeshError", "BudgetError", "DomainError", "FormatError", "MetricError"]
+__all__ = [
+    "AdaptmeshError",
+    "BudgetError",
+    "DomainError",
+    "FormatError",
+    "MetricError",
+    "TransferError",
+]
 
 
 class DomainError(AdaptmeshError, ValueError):
@@ -17,3 +24,7 @@ class BudgetError(AdaptmeshError):
 
 class FormatError(AdaptmeshError, OSError):
     """A file that cannot be read or written: which one, where, and why."""
+
+
+class TransferError(AdaptmeshError, ValueError):
+    """A field that cannot be carried to another mesh: wrong length, not finite, or too far away."""

@@ -6,4 +6,5 @@ NB_MODULE(_core, m) {
     bind_predicates(m);
     bind_triangulate(m);
     bind_mesher(m);
+    bind_transfer(m);
 }

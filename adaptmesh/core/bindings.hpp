@@ -18,11 +18,14 @@ namespace nb = nanobind;
 void bind_predicates(nb::module_& m);
 void bind_triangulate(nb::module_& m);
 void bind_mesher(nb::module_& m);
+void bind_transfer(nb::module_& m);
 
 // (n, 2) and (n, 3) arrays as the Python side hands them over: C-contiguous, right type.
 using Points = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Tensors = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using IndexPairs = nb::ndarray<const std::int32_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using IndexTriples =
+    nb::ndarray<const std::int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Indices = nb::ndarray<const std::int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
 inline std::vector<adaptmesh::Point> to_points(const Points& array) {

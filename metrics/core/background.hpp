@@ -1,299 +1,33 @@
 // The control space carried by a mesh: log tensors at the vertices, linear on each triangle.
-//
-// A look-up walks from a triangle that the caller remembers to the one that has the point, each
-// step across the edge that the point lies furthest behind; without a hint, from a triangle that a
-// grid has for the place. In a mesh with holes and corners a walk
-// may end at the border with the point still beyond; and on a mesh that is not Delaunay it may go
-// in circles. So a walk is only ever an attempt, which nearly always succeeds: when it meets the
-// border or has gone MAX_STEPS steps, a tree of boxes gives the definite answer, which triangle has
-// the point, or, for a point outside, which border edge is nearest.
-//
-// Constant after construction: any number of threads may look up at once.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <numeric>
-#include <stdexcept>
-#include <string>
-#include <utility>
 #include <vector>
 
-#include "metrics/core/boxtree.hpp"
-#include "metrics/core/seedgrid.hpp"
+#include "metrics/core/locator.hpp"
 #include "metrics/core/tensor.hpp"
 
 namespace metrics {
 
-using Index = std::int32_t;
-
-// Where a point is: its triangle and its barycentric coordinates there, none negative. For a point
-// outside, those of the nearest point of the border, and how far away that is.
-struct Location {
-    Index triangle;
-    double weight[3];
-    double outside = 0;
-};
-
-class Background {
+class Background : public Locator {
   public:
-    // points: n pairs (x, y); triangles: m counter-clockwise triples; logs: n packed log tensors.
-    // Throws std::invalid_argument where the triangles are not a mesh.
+    // As for Locator; logs: n packed log tensors.
     Background(const double* points, const double* logs, std::size_t n, const Index* triangles,
-               std::size_t m) {
-        if (m == 0) throw std::invalid_argument("there are no triangles");
-        vertices_.reserve(n);
-        for (std::size_t i = 0; i < n; ++i) {
-            vertices_.push_back({points[2 * i],
-                                 points[2 * i + 1],
-                                 {logs[3 * i], logs[3 * i + 1], logs[3 * i + 2]}});
-        }
-        triangles_.reserve(m);
-        for (std::size_t t = 0; t < m; ++t) {
-            const Index* v = triangles + 3 * t;
-            triangles_.push_back({{v[0], v[1], v[2]}, {NO_TRIANGLE, NO_TRIANGLE, NO_TRIANGLE}});
-        }
-        find_neighbours();
-        plant_trees();
-        sow_seeds();
-    }
-
-    Index triangle_count() const { return Index(triangles_.size()); }
-    Index neighbour(Index triangle, int edge) const { return triangles_[triangle].n[edge]; }
-
-    // Of the box around the mesh.
-    double diagonal() const {
-        const Box box = triangle_tree_.bounds();
-        return std::hypot(box.x1 - box.x0, box.y1 - box.y0);
-    }
-
-    // The metric at (x, y). `triangle` is where to start from (-1, or any number that is not a
-    // triangle, when nothing is known), and becomes the triangle of the point.
-    Tensor at(double x, double y, Index& triangle) const {
-        const Location place = locate(x, y, triangle);
-        triangle = place.triangle;
-        return value(place);
+               std::size_t m)
+        : Locator(points, n, triangles, m) {
+        logs_.reserve(n);
+        for (std::size_t i = 0; i < n; ++i)
+            logs_.push_back({logs[3 * i], logs[3 * i + 1], logs[3 * i + 2]});
     }
 
     Tensor value(const Location& place) const {
-        const Index* v = triangles_[place.triangle].v;
-        return exp_tensor(place.weight[0] * vertices_[v[0]].log +
-                          place.weight[1] * vertices_[v[1]].log +
-                          place.weight[2] * vertices_[v[2]].log);
-    }
-
-    Location locate(double x, double y, Index hint) const {
-        Location place;
-        const bool known = hint >= 0 && hint < triangle_count();
-        if (walk(x, y, known ? hint : seeds_.near(x, y), place) || search(x, y, place))
-            return place;
-        return nearest_on_border(x, y);
+        return exp_tensor(place.weight[0] * logs_[corner(place.triangle, 0)] +
+                          place.weight[1] * logs_[corner(place.triangle, 1)] +
+                          place.weight[2] * logs_[corner(place.triangle, 2)]);
     }
 
   private:
-    static constexpr Index NO_TRIANGLE = -1;
-    static constexpr int MAX_STEPS = 64;
-    // A point in no triangle, by this little in barycentric coordinates, fell between two of them
-    // by rounding.
-    static constexpr double ROUNDING = 1e-9;
-
-    struct Vertex {
-        double x, y;
-        Tensor log;
-    };
-
-    // Edge i lies opposite vertex i, and neighbour n[i] across it.
-    struct Triangle {
-        Index v[3], n[3];
-    };
-
-    struct Side {
-        Index triangle;
-        int edge;
-    };
-
-    // Twice the area of the triangle (point, v[i + 1], v[i + 2]): negative where the point is
-    // behind edge i. The same edge seen from its other triangle gives exactly the opposite number,
-    // so no walk turns back on its last step.
-    void areas(const Triangle& t, double x, double y, double w[3]) const {
-        const Vertex &p = vertices_[t.v[0]], &q = vertices_[t.v[1]], &r = vertices_[t.v[2]];
-        const double px = p.x - x, py = p.y - y;
-        const double qx = q.x - x, qy = q.y - y;
-        const double rx = r.x - x, ry = r.y - y;
-        w[0] = qx * ry - qy * rx;
-        w[1] = rx * py - ry * px;
-        w[2] = px * qy - py * qx;
-    }
-
-    static Location inside(Index triangle, const double w[3]) {
-        Location place{triangle, {1.0 / 3, 1.0 / 3, 1.0 / 3}};
-        const double p = std::max(w[0], 0.0), q = std::max(w[1], 0.0), r = std::max(w[2], 0.0);
-        const double sum = p + q + r;
-        if (sum > 0) {
-            const double scale = 1 / sum;
-            place.weight[0] = p * scale, place.weight[1] = q * scale, place.weight[2] = r * scale;
-        }
-        return place;
-    }
-
-    bool walk(double x, double y, Index start, Location& place) const {
-        for (int step = 0; step < MAX_STEPS; ++step) {
-            const Triangle& t = triangles_[start];
-            double w[3];
-            areas(t, x, y, w);
-            Index onward = NO_TRIANGLE;
-            double furthest = 0;
-            bool behind = false;
-            for (int i = 0; i < 3; ++i) {
-                behind |= w[i] < 0;
-                if (w[i] < furthest && t.n[i] != NO_TRIANGLE) furthest = w[i], onward = t.n[i];
-            }
-            if (!behind) {
-                place = inside(start, w);
-                return true;
-            }
-            if (onward == NO_TRIANGLE) return false;
-            start = onward;
-        }
-        return false;
-    }
-
-    // Among the triangles whose boxes have the point: the one that has it best.
-    bool search(double x, double y, Location& place) const {
-        double best = -ROUNDING;
-        bool found = false;
-        triangle_tree_.containing(x, y, [&](Index t) {
-            double w[3];
-            areas(triangles_[t], x, y, w);
-            const double least = std::min({w[0], w[1], w[2]}) / (w[0] + w[1] + w[2]);
-            if (least >= best) best = least, found = true, place = inside(t, w);
-            return best >= 0;
-        });
-        return found;
-    }
-
-    Location nearest_on_border(double x, double y) const {
-        double share = 0, distance = 0;
-        const Index nearest = border_tree_.nearest(x, y, [&](Index side) {
-            share_of_side(border_[side], x, y, distance);
-            return distance;
-        });
-        const Side side = border_[nearest];
-        share = share_of_side(side, x, y, distance);
-        Location place{side.triangle, {0, 0, 0}, std::sqrt(distance)};
-        place.weight[(side.edge + 1) % 3] = 1 - share;
-        place.weight[(side.edge + 2) % 3] = share;
-        return place;
-    }
-
-    // How far along a side its point nearest to (x, y) is, and the squared distance to it.
-    double share_of_side(Side side, double x, double y, double& squared_distance) const {
-        const Triangle& t = triangles_[side.triangle];
-        const Vertex& p = vertices_[t.v[(side.edge + 1) % 3]];
-        const Vertex& q = vertices_[t.v[(side.edge + 2) % 3]];
-        const double ex = q.x - p.x, ey = q.y - p.y;
-        const double projection = ((x - p.x) * ex + (y - p.y) * ey) / (ex * ex + ey * ey);
-        const double share = std::min(std::max(projection, 0.0), 1.0);
-        const double dx = p.x + share * ex - x, dy = p.y + share * ey - y;
-        squared_distance = dx * dx + dy * dy;
-        return share;
-    }
-
-    // Sides sorted by their smaller vertex (by counting), then by the other: the two sides of one
-    // edge become consecutive.
-    void find_neighbours() {
-        std::vector<std::size_t> first(vertices_.size() + 1, 0);
-        for_each_side([&](Index low, Index, Side) { ++first[low + 1]; });
-        std::partial_sum(first.begin(), first.end(), first.begin());
-        std::vector<EdgeSide> sides(3 * triangles_.size());
-        std::vector<std::size_t> next(first.begin(), first.end() - 1);
-        for_each_side([&](Index low, Index high, Side side) { sides[next[low]++] = {high, side}; });
-        for (std::size_t low = 0; low < vertices_.size(); ++low) {
-            const auto begin = sides.begin() + first[low], end = sides.begin() + first[low + 1];
-            std::sort(begin, end, [](const EdgeSide& s, const EdgeSide& t) {
-                return s.high != t.high ? s.high < t.high : s.side.triangle < t.side.triangle;
-            });
-            for (auto s = begin; s != end;) {
-                const auto one_edge = [&](const EdgeSide& t) { return t.high == s->high; };
-                const auto stop = std::find_if_not(s, end, one_edge);
-                if (stop - s > 1) join(Index(low), s->high, s->side, s[1].side, stop - s);
-                s = stop;
-            }
-        }
-    }
-
-    struct EdgeSide {
-        Index high;
-        Side side;
-    };
-
-    // Calls visit(smaller vertex, larger vertex, side) for every side of every triangle.
-    template <typename Visit>
-    void for_each_side(Visit visit) const {
-        for (Index t = 0; t < triangle_count(); ++t) {
-            for (int i = 0; i < 3; ++i) {
-                const Index from = start(t, i), to = start(t, (i + 1) % 3);
-                visit(std::min(from, to), std::max(from, to), Side{t, i});
-            }
-        }
-    }
-
-    // The vertex that side i of triangle t runs from, counter-clockwise.
-    Index start(Index t, int i) const { return triangles_[t].v[(i + 1) % 3]; }
-
-    void join(Index low, Index high, Side here, Side there, std::ptrdiff_t count) {
-        if (count > 2 || start(here.triangle, here.edge) == start(there.triangle, there.edge)) {
-            throw std::invalid_argument(
-                "triangles " + std::to_string(here.triangle) + " and " +
-                std::to_string(there.triangle) + " overlap at the edge (" + std::to_string(low) +
-                ", " + std::to_string(high) +
-                "): they lie on the same side of it, or it has more than two triangles");
-        }
-        triangles_[here.triangle].n[here.edge] = there.triangle;
-        triangles_[there.triangle].n[there.edge] = here.triangle;
-    }
-
-    void plant_trees() {
-        std::vector<Box> boxes, border_boxes;
-        boxes.reserve(triangles_.size());
-        for (Index t = 0; t < triangle_count(); ++t) {
-            Box box;
-            for (int i = 0; i < 3; ++i) {
-                include(box, t, i);
-                if (triangles_[t].n[i] != NO_TRIANGLE) continue;
-                Box side;
-                include(side, t, (i + 1) % 3), include(side, t, (i + 2) % 3);
-                border_.push_back({t, i});
-                border_boxes.push_back(side);
-            }
-            boxes.push_back(box);
-        }
-        triangle_tree_ = BoxTree(boxes);
-        border_tree_ = BoxTree(border_boxes);
-    }
-
-    void sow_seeds() {
-        seeds_ = SeedGrid(triangle_tree_.bounds(), triangles_.size());
-        for (Index t = 0; t < triangle_count(); ++t) {
-            const Index* v = triangles_[t].v;
-            const Vertex &p = vertices_[v[0]], &q = vertices_[v[1]], &r = vertices_[v[2]];
-            seeds_.put((p.x + q.x + r.x) / 3, (p.y + q.y + r.y) / 3, t);
-        }
-        seeds_.fill_gaps();
-    }
-
-    void include(Box& box, Index t, int corner) const {
-        const Vertex& vertex = vertices_[triangles_[t].v[corner]];
-        box.include(vertex.x, vertex.y);
-    }
-
-    std::vector<Vertex> vertices_;
-    std::vector<Triangle> triangles_;
-    std::vector<Side> border_;
-    BoxTree triangle_tree_, border_tree_;
-    SeedGrid seeds_;
+    std::vector<Tensor> logs_;
 };
 
 }  // namespace metrics

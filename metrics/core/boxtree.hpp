@@ -32,6 +32,9 @@ struct Box {
         y0 = std::min(y0, other.y0), y1 = std::max(y1, other.y1);
     }
     bool contains(double x, double y) const { return x0 <= x && x <= x1 && y0 <= y && y <= y1; }
+    bool meets(const Box& other) const {
+        return x0 <= other.x1 && other.x0 <= x1 && y0 <= other.y1 && other.y0 <= y1;
+    }
     double squared_distance(double x, double y) const {
         const double dx = std::max(std::max(x0 - x, x - x1), 0.0);
         const double dy = std::max(std::max(y0 - y, y - y1), 0.0);

@@ -1,0 +1,177 @@
+"""Fields at the nodes of another mesh."""
+
+import numpy as np
+import pytest
+
+import adaptmesh as am
+from adaptmesh.spaces import Space
+
+SQUARE = am.Domain.rectangle(0, 0, 1, 1)
+
+
+def mesh_of(size, domain=SQUARE):
+    return am.generate(domain, size)
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return mesh_of(0.12), mesh_of(lambda x: 0.03 + 0.1 * x[:, 0])
+
+
+def linear(points):
+    return 1 + points @ [2, -3]
+
+
+def quadratic(points):
+    x, y = points.T
+    return 1 + x - 2 * y + 3 * x * x - x * y + 2 * y * y
+
+
+@pytest.mark.parametrize(("space", "field"), [("P1", linear), ("P2", quadratic)])
+def test_what_the_space_can_hold_is_exact(pair, space, field):
+    old, new = pair
+    moved = am.transfer(field(Space(old, space).nodes), old, new)
+    np.testing.assert_allclose(moved, field(Space(new, space).nodes), atol=1e-13)
+
+
+def test_p0_takes_the_value_at_the_centroid(pair):
+    old, new = pair
+    numbers = np.arange(len(old.triangles))
+    moved = am.transfer(numbers, old, new).astype(int)
+    corners = old.points[old.triangles[moved]]
+    centroids = new.points[new.triangles].mean(axis=1)
+    for i in range(3):
+        a, b = corners[:, i], corners[:, (i + 1) % 3]
+        u, v = b - a, centroids - a
+        assert (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] >= -1e-15).all()
+
+
+def test_any_number_of_fields_at_once(pair):
+    old, new = pair
+    velocity = np.stack([linear(old.points), quadratic(old.points)], axis=1)
+    given = {
+        "velocity": velocity,
+        "stress": np.ones((len(old.triangles), 2, 2)),
+        "wave": linear(old.points) * (1 + 2j),
+        "count": np.arange(len(old.points)),
+    }
+    moved = am.transfer(given, old, new)
+    assert list(moved) == list(given)
+    assert moved["velocity"].shape == (len(new.points), 2)
+    alone = am.transfer(velocity[:, 1], old, new)
+    np.testing.assert_allclose(moved["velocity"][:, 1], alone, atol=1e-14)
+    assert moved["stress"].shape == (len(new.triangles), 2, 2)
+    np.testing.assert_allclose(moved["wave"], linear(new.points) * (1 + 2j), atol=1e-13)
+    assert moved["count"].dtype == np.float64
+
+
+def test_interpolation_is_of_second_and_third_order():
+    def field(points):
+        return np.sin(4 * points[:, 0]) * np.cos(3 * points[:, 1])
+
+    target = mesh_of(0.011)
+    errors = {"P1": [], "P2": []}
+    for size in (0.1, 0.05, 0.025):
+        old = mesh_of(size)
+        for space, found in errors.items():
+            moved = am.transfer(field(Space(old, space).nodes), old, target, space=space)
+            found.append(np.sqrt(np.mean((moved - field(Space(target, space).nodes)) ** 2)))
+    for space, order in (("P1", 2), ("P2", 3)):
+        rates = np.log2(np.divide(errors[space][:-1], errors[space][1:]))
+        assert (rates > order - 0.25).all(), (space, rates)
+
+
+@pytest.mark.parametrize("space", ["P0", "P1", "P2"])
+def test_the_same_mesh_gives_the_same_bits(pair, space):
+    old = pair[0]
+    values = np.random.default_rng(0).random(Space(old, space).size)
+    copy = am.Mesh(old.points, old.triangles)
+    moved = am.transfer(values, old, copy, space=space)
+    np.testing.assert_array_equal(moved, values)
+    assert not np.shares_memory(moved, values)
+
+
+def test_a_common_vertex_keeps_its_bits(pair):
+    old = pair[0]
+    values = np.random.default_rng(0).random(len(old.points))
+    turned = am.Mesh(old.points, np.roll(old.triangles[::-1], 1, axis=1))
+    np.testing.assert_array_equal(am.transfer(values, old, turned), values)
+
+
+def ring(n):
+    angles = np.linspace(0, 2 * np.pi, n, endpoint=False)
+    return am.Domain.polygon(np.stack([np.cos(angles), np.sin(angles)], axis=1))
+
+
+@pytest.mark.parametrize(("old_sides", "new_sides"), [(17, 40), (40, 17), (8, 31)])
+@pytest.mark.parametrize("space", ["P0", "P1", "P2"])
+def test_chords_of_a_curved_boundary_differ(old_sides, new_sides, space):
+    old, new = mesh_of(0.3, ring(old_sides)), mesh_of(0.3, ring(new_sides))
+    moved = am.transfer(np.full(Space(old, space).size, 7.0), old, new, space=space)
+    np.testing.assert_allclose(moved, 7, rtol=1e-14)
+
+
+def test_too_far_outside():
+    old, new = mesh_of(0.2), mesh_of(0.2, am.Domain.rectangle(0, 0, 1.5, 1))
+    values = old.points[:, 0]
+    with pytest.raises(am.TransferError, match=r"far outside.*P1 node .* by 0.5"):
+        am.transfer(values, old, new)
+    assert am.transfer(values, old, new, outside=np.inf).max() == 1
+
+
+BAD = {
+    "length": (lambda m: np.ones(len(m.points) + 1), {}, r"has \d+ values; the old mesh takes"),
+    "no length": (lambda m: 3.0, {}, "single number"),
+    "nan": (
+        lambda m: np.where(np.arange(len(m.points)) == 5, np.nan, 1.0),
+        {},
+        r"value 5, at \(.*\), is nan",
+    ),
+    "infinite vector": (
+        lambda m: np.where(np.arange(len(m.points)) == 5, np.inf, 1.0)[:, None],
+        {},
+        r"value 5, at",
+    ),
+    "text": (lambda m: ["a"] * len(m.points), {}, "array of numbers"),
+    "ragged": (lambda m: [[1.0], [1.0, 2.0]], {}, "array of numbers"),
+    "space": (lambda m: np.ones(len(m.points)), {"space": "P3"}, "'P3' is none of"),
+    "wrong space": (lambda m: np.ones(len(m.points)), {"space": "P0"}, "P0 on the old mesh takes"),
+    "method": (lambda m: np.ones(len(m.points)), {"method": "magic"}, "'magic' is none of"),
+    "negative": (lambda m: np.ones(len(m.points)), {"outside": -1}, "outside=-1"),
+    "unknown name": (lambda m: {"u": np.ones(len(m.points))}, {"space": {"v": "P1"}}, "no such"),
+}
+
+
+@pytest.mark.parametrize("case", BAD, ids=str)
+def test_bad_fields(pair, case):
+    values, options, message = BAD[case]
+    with pytest.raises(am.TransferError, match=message):
+        am.transfer(values(pair[0]), *pair, **options)
+
+
+def test_a_field_is_named(pair):
+    with pytest.raises(am.TransferError, match="field 'pressure' has 3 values"):
+        am.transfer({"pressure": [1, 2, 3]}, *pair)
+
+
+def test_a_length_that_fits_two_spaces():
+    ring = am.Mesh(  # around a hole: six points, six triangles
+        [(0, 0), (4, 0), (0, 4), (1, 1), (2, 1), (1, 2)],
+        [(0, 1, 3), (1, 4, 3), (1, 2, 4), (2, 5, 4), (2, 0, 5), (0, 3, 5)],
+    )
+    with pytest.raises(am.TransferError, match="fits P0 or P1: say space='P0' or space='P1'"):
+        am.transfer(np.ones(6), ring, ring)
+    assert am.transfer(np.ones(6), ring, ring, space="P0").shape == (6,)
+
+
+@pytest.mark.parametrize(
+    ("triangles", "message"),
+    [
+        ([(0, 2, 1)], "triangle 0 .* counter-clockwise"),
+        ([(0, 1, 2), (0, 1, 2)], "not a mesh: .* overlap"),
+    ],
+)
+def test_a_broken_old_mesh(triangles, message):
+    broken = am.Mesh([(0, 0), (1, 0), (0, 1)], triangles)
+    with pytest.raises(am.TransferError, match=message):
+        am.transfer(np.ones(3), broken, mesh_of(0.5), space="P1", outside=np.inf)
