@@ -8,6 +8,7 @@ except ImportError as error:
         "Install it (pip install .) and start Python in another folder"
     ) from error
 
+from . import curves
 from .adapt import adapt
 from .domain import Domain
 from .domain_io import read_domain
@@ -42,6 +43,7 @@ __all__ = [
     "TransferError",
     "Validity",
     "adapt",
+    "curves",
     "delaunay",
     "generate",
     "measure",

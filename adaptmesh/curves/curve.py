@@ -1,0 +1,117 @@
+"""What a curve is: a function of t in [0, 1] with ends and kinks."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import DomainError
+
+Floats = NDArray[np.float64]
+
+
+class Curve(ABC):
+    """A planar curve: a function of t in [0, 1], smooth but for its `breaks`.
+
+    A subclass gives `_point` and `_derivative` of t (n,); what it returns is checked here.
+    """
+
+    is_closed: bool = False
+    """Whether it ends where it begins, smoothly."""
+
+    is_straight: bool = False
+    """Whether it is a straight line with uniform speed between its breaks."""
+
+    @property
+    def breaks(self) -> Floats:
+        """Where it has kinks, (k,), ascending, inside (0, 1)."""
+        return np.empty(0)
+
+    def point(self, t: ArrayLike) -> Floats:
+        """Points (n, 2) at t (n,).
+
+        Raises
+        ------
+        DomainError
+            If the curve is not finite there.
+        """
+        t = np.atleast_1d(np.asarray(t, np.float64))
+        return self._checked(self._point(t), t, "point")
+
+    def derivative(self, t: ArrayLike) -> Floats:
+        """Derivatives by t (n, 2) at t (n,); at a break, that of the side of larger t."""
+        t = np.atleast_1d(np.asarray(t, np.float64))
+        return self._checked(self._derivative(t), t, "derivative")
+
+    @cached_property
+    def start(self) -> Floats:
+        """The point at t = 0, (2,)."""
+        start: Floats = self.point(0.0)[0]
+        return start
+
+    @cached_property
+    def end(self) -> Floats:
+        """The point at t = 1, (2,); that at t = 0 if the curve is closed."""
+        end: Floats = self.start if self.is_closed else self.point(1.0)[0]
+        return end
+
+    def reversed(self) -> Curve:
+        """The same curve, run through backwards."""
+        return Part(self, 1.0, 0.0)
+
+    def part(self, t0: float, t1: float) -> Curve:
+        """The part from t0 to t1, backwards if t1 < t0; to cut a curve where another one ends."""
+        return Part(self, t0, t1)
+
+    @abstractmethod
+    def _point(self, t: Floats) -> Floats: ...
+
+    @abstractmethod
+    def _derivative(self, t: Floats) -> Floats: ...
+
+    def _checked(self, values: Floats, t: Floats, what: str) -> Floats:
+        bad = np.flatnonzero(~np.isfinite(values).all(axis=1))
+        if len(bad):
+            x, y = values[bad[0]]
+            raise DomainError(
+                f"{self!r}: its {what} at t = {t[bad[0]]:.17g} is ({x}, {y}), not finite"
+            )
+        return values
+
+    def __repr__(self) -> str:
+        return type(self).__name__
+
+
+class Part(Curve):
+    """A part of a curve, forwards or backwards; see `Curve.part`."""
+
+    def __init__(self, whole: Curve, t0: float, t1: float) -> None:
+        if not (0 <= t0 <= 1 and 0 <= t1 <= 1 and t0 != t1):
+            raise DomainError(f"{whole!r}: no part from t = {t0} to {t1}; 0 <= t <= 1, different")
+        self.whole, self.t0, self.t1 = whole, float(t0), float(t1)
+        self.is_straight = whole.is_straight
+        self.is_closed = whole.is_closed and abs(t1 - t0) == 1
+
+    @property
+    def breaks(self) -> Floats:
+        """The kinks of the whole that lie in the part."""
+        inside = (self.whole.breaks - self.t0) / (self.t1 - self.t0)
+        out: Floats = np.sort(inside[(inside > 0) & (inside < 1)])
+        return out
+
+    def _point(self, t: Floats) -> Floats:
+        return self.whole.point(self._of_whole(t))
+
+    def _derivative(self, t: Floats) -> Floats:
+        return (self.t1 - self.t0) * self.whole.derivative(self._of_whole(t))
+
+    def _of_whole(self, t: Floats) -> Floats:
+        # both ends exactly
+        out: Floats = np.where(t == 1, self.t1, self.t0 + t * (self.t1 - self.t0))
+        return out
+
+    def __repr__(self) -> str:
+        return f"{self.whole!r} from t = {self.t0:g} to {self.t1:g}"

@@ -1,0 +1,163 @@
+"""Curves given by control points or by points to pass through; scipy evaluates them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..errors import DomainError
+from .checks import check_distinct, checked_points
+from .curve import Curve, Floats
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline as ScipyBSpline
+
+
+class Bezier(Curve):
+    """The Bézier curve of control points (n + 1, 2), of degree n."""
+
+    def __init__(self, control_points: ArrayLike) -> None:
+        self.control_points = checked_points(control_points, "Bezier", 2)
+        if (self.control_points == self.control_points[0]).all():
+            raise DomainError("Bezier: its control points are all the same")
+
+    def _point(self, t: Floats) -> Floats:
+        return _de_casteljau(self.control_points, t)
+
+    def _derivative(self, t: Floats) -> Floats:
+        sides = np.diff(self.control_points, axis=0)
+        return _de_casteljau(len(sides) * sides, t)
+
+
+class Spline(Curve):
+    """The interpolating cubic spline through points, by `scipy.interpolate.CubicSpline`.
+
+    Parameters
+    ----------
+    points : (n, 2) array_like
+    closed : bool
+        Whether it is periodic: it leads back to the first point, smoothly. To come back with a
+        corner (the trailing edge of an aerofoil), repeat the first point and leave this out.
+
+    Notes
+    -----
+    Parametrised by the lengths of the chords; at open ends not-a-knot.
+    """
+
+    def __init__(self, points: ArrayLike, closed: bool = False) -> None:
+        from scipy.interpolate import CubicSpline
+
+        p = checked_points(points, "Spline", 3 if closed else 2)
+        if closed and (p[0] != p[-1]).any():
+            p = np.concatenate([p, p[:1]])
+        check_distinct(p, "Spline")
+        self.points, self.is_closed = p, closed
+        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(p, axis=0).T))])
+        self._spline = CubicSpline(
+            along / along[-1], p, bc_type="periodic" if closed else "not-a-knot"
+        )
+
+    def _point(self, t: Floats) -> Floats:
+        return np.asarray(self._spline(t), np.float64)
+
+    def _derivative(self, t: Floats) -> Floats:
+        return np.asarray(self._spline(t, 1), np.float64)
+
+
+class BSpline(Curve):
+    """A B-spline, rational (NURBS) if it has weights, by `scipy.interpolate.BSpline`.
+
+    Parameters
+    ----------
+    control_points : (n, 2) array_like
+    degree : int
+    knots : (n + degree + 1,) array_like, optional
+        Ascending; the curve is that between knots[degree] and knots[n]. If not given, equidistant,
+        and so that the curve begins and ends at its outer control points.
+    weights : (n,) array_like, optional
+        Positive.
+    closed : bool
+        Whether the control points are periodic: the curve closes smoothly. Without `knots`.
+    """
+
+    def __init__(
+        self,
+        control_points: ArrayLike,
+        degree: int = 3,
+        knots: ArrayLike | None = None,
+        weights: ArrayLike | None = None,
+        closed: bool = False,
+    ) -> None:
+        p = checked_points(control_points, "BSpline", 2)
+        if degree != int(degree) or degree < 1 or len(p) < degree + 1 - (1 if closed else 0):
+            raise DomainError(
+                f"BSpline: degree {degree} with {len(p)} control points; a degree from 1 on and at "
+                "least one point more are wanted"
+            )
+        w = np.ones(len(p)) if weights is None else np.array(weights, np.float64)
+        if w.shape != (len(p),) or not (np.isfinite(w) & (w > 0)).all():
+            raise DomainError(f"BSpline: weights must be {len(p)} positive numbers")
+        if (p == p[0]).all():
+            raise DomainError("BSpline: its control points are all the same")
+        self.degree, self.is_closed = int(degree), closed
+        if closed:
+            if knots is not None:
+                raise DomainError("BSpline: a closed one has equidistant knots; leave `knots` out")
+            p, w = (np.concatenate([a, a[:degree]]) for a in (p, w))
+        self.control_points, self.weights = p, w
+        self.knots = self._checked_knots(knots)
+        self._spline = self._with_coefficients(np.column_stack([p * w[:, None], w]))
+        self._slope = self._spline.derivative()
+
+    @property
+    def breaks(self) -> Floats:
+        """The knots where it is but continuous: those as many as its degree."""
+        inner = self.knots[self.degree + 1 : -self.degree - 1]
+        knots, times = np.unique(inner[(inner > 0) & (inner < 1)], return_counts=True)
+        out: Floats = knots[times >= self.degree]
+        return out
+
+    def _checked_knots(self, knots: ArrayLike | None) -> Floats:
+        n, k = len(self.control_points), self.degree
+        if knots is None:
+            if self.is_closed:
+                return (np.arange(n + k + 1) - k) / (n - k)
+            inner = np.arange(1, n - k) / (n - k)
+            return np.concatenate([np.zeros(k + 1), inner, np.ones(k + 1)])
+        u = np.array(knots, np.float64)
+        if u.shape != (n + k + 1,):
+            raise DomainError(f"BSpline: {u.size} knots; {n} points of degree {k} need {n + k + 1}")
+        bad = np.flatnonzero(~(np.diff(u) >= 0))
+        if len(bad) or not np.isfinite(u).all() or not u[k] < u[n]:
+            at = f" after knot {bad[0]}" if len(bad) else ""
+            raise DomainError(f"BSpline: knots must be finite and ascend{at}")
+        out: Floats = (u - u[k]) / (u[n] - u[k])
+        return out
+
+    def _with_coefficients(self, coefficients: Floats) -> ScipyBSpline:
+        from scipy.interpolate import BSpline as ScipyBSpline
+
+        return ScipyBSpline(self.knots, coefficients, self.degree)
+
+    def _point(self, t: Floats) -> Floats:
+        values = self._spline(t)
+        out: Floats = values[:, :2] / values[:, 2:]
+        return out
+
+    def _derivative(self, t: Floats) -> Floats:
+        values, slopes = self._spline(t), self._slope(t)
+        p = values[:, :2] / values[:, 2:]
+        out: Floats = (slopes[:, :2] - p * slopes[:, 2:]) / values[:, 2:]
+        return out
+
+
+def _de_casteljau(control: Floats, t: Floats) -> Floats:
+    """The Bézier curve of control points (n, 2) at t (m,): stable at any degree."""
+    s = t[:, None, None]
+    p = np.broadcast_to(control, (len(t), *control.shape))
+    while p.shape[1] > 1:
+        p = (1 - s) * p[:, :-1] + s * p[:, 1:]
+    out: Floats = p[:, 0].copy()
+    return out
