@@ -4,6 +4,12 @@ from . import tensor
 from .background import Background
 from .control import ControlSpace, Metric, Uniform, as_control_space
 from .errors import AdaptmeshError, MetricError
+from .estimators import (
+    doerfler_marking,
+    metric_from_indicators,
+    residual_indicators,
+    zz_indicators,
+)
 from .expression import Expression
 from .files import read
 from .gradation import graded
@@ -62,6 +68,7 @@ __all__ = [
     "as_control_space",
     "combined",
     "complexity",
+    "doerfler_marking",
     "edge_lengths",
     "efficiency_index",
     "first_height",
@@ -74,6 +81,7 @@ __all__ = [
     "lp_metric",
     "mesh_edges",
     "metric_areas",
+    "metric_from_indicators",
     "metric_from_solution",
     "nodal_areas",
     "nodal_complexity",
@@ -83,6 +91,8 @@ __all__ = [
     "predicted_vertices",
     "qualities",
     "read",
+    "residual_indicators",
     "tensor",
     "triangle_metrics",
+    "zz_indicators",
 ]

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from .arrays import Floats, Ints, as_numbers, as_points, as_triangles
+from .arrays import Floats, Ints, as_numbers
+from .elements import LinearElements, checked_values, place_of
 from .errors import MetricError
 
 __all__ = ["METHODS", "absolute", "gradients", "hessians"]
@@ -36,7 +37,8 @@ def gradients(
     MetricError
         As for `hessians`.
     """
-    p, t, u = _checked(points, triangles, values, method)
+    _check_method(method)
+    p, t, u = checked_values(points, triangles, values)
     if method == "least squares":
         return _fit(p, t, u)[0]
     if method == "green":
@@ -87,7 +89,8 @@ def hessians(
     Kamenski, Huang: How a nonconvergent recovered Hessian works in mesh adaptation. SIAM Journal
     on Numerical Analysis 52 (2014), 1692-1708: why Hessians that do not converge still serve.
     """
-    p, t, u = _checked(points, triangles, values, method)
+    _check_method(method)
+    p, t, u = checked_values(points, triangles, values)
     if method == "least squares":
         return _fit(p, t, u)[1]
     lumped = _Lumped(p, t)
@@ -119,64 +122,29 @@ def absolute(hessians: ArrayLike, floor: ArrayLike = 0.0) -> Floats:
     return _core.absolute(tensors, floors)
 
 
-def _checked(
-    points: ArrayLike, triangles: ArrayLike, values: ArrayLike, method: str
-) -> tuple[Floats, Ints, Floats]:
+def _check_method(method: str) -> None:
     if method not in METHODS:
         raise MetricError(f"method must be one of {', '.join(map(repr, METHODS))}, not {method!r}")
-    p = as_points(points)
-    t = as_triangles(triangles, len(p))
-    u = np.ascontiguousarray(as_numbers(values, "values"), np.float64)
-    if u.shape != (len(p),):
-        raise MetricError(f"values must have the shape ({len(p)},), one a point, not {u.shape}")
-    if not np.isfinite(u).all():
-        i = int(np.argmin(np.isfinite(u)))
-        raise MetricError(f"the value at {_place(p, i)} is not finite: {u[i]}")
-    i = _core.check_triangles(p, t)
-    if i >= 0:
-        raise MetricError(f"triangle {i} = {tuple(t[i].tolist())} is not counter-clockwise")
-    alone = np.bincount(t.ravel(), minlength=len(p)) == 0
-    if alone.any():
-        raise MetricError(f"{_place(p, int(alone.argmax()))} is in no triangle; drop such points")
-    return p, t, u
 
 
 def _fit(p: Floats, t: Ints, u: Floats) -> tuple[Floats, Floats]:
     first, second, undetermined = _core.quadratic_fit(p, t, u)
     if undetermined >= 0:
         raise MetricError(
-            f"the values around {_place(p, undetermined)} do not determine a quadratic: the points "
-            "there lie on two lines, or another conic; refine the mesh across, or use "
+            f"the values around {place_of(p, undetermined)} do not determine a quadratic: the "
+            "points there lie on two lines, or another conic; refine the mesh across, or use "
             'the method "projection"'
         )
     return first, second
 
 
-def _place(p: Floats, i: int) -> str:
-    x, y = p[i].tolist()
-    return f"point {i} ({x!r}, {y!r})"
-
-
-class _Lumped:
-    """Linear finite elements with the mass matrix lumped: `mass` (n,) is its diagonal.
-
-    `slopes` (m, 3, 2) are the gradients of the three hat functions on each triangle.
-    """
-
-    def __init__(self, p: Floats, t: Ints) -> None:
-        self.triangles = t
-        corners = p[t]
-        opposite = corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]]
-        u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-        doubled = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-        self.areas = doubled / 2
-        self.slopes = np.stack([-opposite[..., 1], opposite[..., 0]], 2) / doubled[:, None, None]
-        self.mass = self._gathered(np.repeat(self.areas[:, None] / 3, 3, axis=1))
+class _Lumped(LinearElements):
+    """Recovery by linear finite elements with the mass matrix lumped."""
 
     def gradient(self, u: Floats) -> Floats:
         """The projection of the gradient, (n, 2)."""
-        parts = self._on_triangles(u) * (self.areas / 3)[:, None]
-        sums = [self._gathered(np.repeat(parts[:, [k]], 3, axis=1)) for k in range(2)]
+        parts = self.gradients(u) * (self.areas / 3)[:, None]
+        sums = [self.gathered(np.repeat(parts[:, [k]], 3, axis=1)) for k in range(2)]
         return np.stack(sums, axis=1) / self.mass[:, None]
 
     def projected_twice(self, u: Floats) -> Floats:
@@ -185,10 +153,10 @@ class _Lumped:
         return np.stack([of_x[:, 0], 0.5 * (of_x[:, 1] + of_y[:, 0]), of_y[:, 1]], axis=1)
 
     def green(self, u: Floats) -> Floats:
-        g, s = self._on_triangles(u)[:, None] * self.areas[:, None, None], self.slopes
+        g, s = self.gradients(u)[:, None] * self.areas[:, None, None], self.slopes
         xx, yy = g[..., 0] * s[..., 0], g[..., 1] * s[..., 1]
         xy = 0.5 * (g[..., 0] * s[..., 1] + g[..., 1] * s[..., 0])
-        sums = np.stack([self._gathered(part) for part in (xx, xy, yy)], axis=1)
+        sums = np.stack([self.gathered(part) for part in (xx, xy, yy)], axis=1)
         out: Floats = -sums / self.mass[:, None]
         self._spread_to_border(out)
         return out
@@ -216,13 +184,3 @@ class _Lumped:
                 sums = np.bincount(b[use], out[a[use], k], len(out))
                 out[now, k] = sums[now] / count[now]
             known |= now
-
-    def _on_triangles(self, u: Floats) -> Floats:
-        """Gradients on triangles, (m, 2)."""
-        out: Floats = np.einsum("ti,tik->tk", u[self.triangles], self.slopes)
-        return out
-
-    def _gathered(self, parts: Floats) -> Floats:
-        """Sums at vertices (n,) of parts at the corners of triangles (m, 3)."""
-        out: Floats = np.bincount(self.triangles.ravel(), parts.ravel()).astype(np.float64)
-        return out
