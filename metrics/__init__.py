@@ -12,6 +12,7 @@ from .estimators import (
 )
 from .expression import Expression
 from .files import read
+from .goal import metric_from_adjoint
 from .gradation import graded
 from .implied import implied_metric, triangle_metrics
 from .measure import (
@@ -81,6 +82,7 @@ __all__ = [
     "lp_metric",
     "mesh_edges",
     "metric_areas",
+    "metric_from_adjoint",
     "metric_from_indicators",
     "metric_from_solution",
     "nodal_areas",

@@ -1,0 +1,129 @@
+"""The metric for one number that is wanted of a solution, weighted by an adjoint."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import tensor
+from .arrays import Floats, as_numbers
+from .background import Background
+from .elements import checked_mesh, place_of
+from .errors import MetricError
+from .normalise import Limits, count_goal, lp_metric, scaled_to
+from .recovery import absolute, gradients, hessians
+
+__all__ = ["metric_from_adjoint"]
+
+_FLATNESS = 1e-8  # of the largest eigenvalue
+
+
+def metric_from_adjoint(
+    points: ArrayLike,
+    triangles: ArrayLike,
+    fluxes: ArrayLike,
+    adjoint: ArrayLike,
+    *,
+    target_vertices: float | None = None,
+    complexity: float | None = None,
+    h_min: float = 0.0,
+    h_max: float = np.inf,
+    max_anisotropy: float = np.inf,
+    gradation: float | None = 1.5,
+    law: str = "mixed",
+    recovery: str = "least squares",
+) -> Background:
+    """The metric of least error in a goal J(u), for what there is to spend.
+
+    For a conservation law div F(u) = f and the adjoint z of the goal, the error of J is bounded by
+    the interpolation error of the fluxes, weighted by the gradient of the adjoint:
+
+        |J(u) - J(u_h)| <= integral of  sum_i |dz/dx_i| |F_i - its interpolant|.
+
+    So the weighted sum of the absolute Hessians of all fluxes takes the place of the Hessian of the
+    solution, in the L^1 norm.
+
+    Parameters
+    ----------
+    points : (n, 2) array_like
+    triangles : (m, 3) array_like of int
+        Counter-clockwise.
+    fluxes : (n, 2) or (n, k, 2) array_like
+        At the points, the flux of each of k equations in x and y: for convection and diffusion,
+        ``-div(a grad u) + b . grad u``, it is ``b u - a grad u``. Gradients in it are recovered,
+        e.g. by `metrics.gradients`.
+    adjoint : (n,) or (n, k) array_like
+        The adjoint solution z of each equation at the points; its scale does not matter.
+    target_vertices, complexity, h_min, h_max, max_anisotropy, gradation, law, recovery
+        As for `metric_from_solution`.
+
+    Returns
+    -------
+    Background
+        The metric, carried by the mesh given.
+
+    Raises
+    ------
+    MetricError
+        For arrays that do not fit or are not finite; if the adjoint is constant, or no flux has
+        curvature where it changes, so that the goal asks for nothing; and as for
+        `metric_from_solution`.
+
+    Notes
+    -----
+    Where the goal does not depend on the mesh, the weighted Hessian is nearly zero and sizes are
+    bounded by `h_max` and `gradation` only: a finite `h_max` is advised.
+
+    References
+    ----------
+    Loseille, Dervieux, Alauzet: Fully anisotropic goal-oriented mesh adaptation for 3D steady Euler
+    equations. Journal of Computational Physics 229 (2010), 2866-2897.
+    """
+    p, t = checked_mesh(points, triangles)
+    f, z = _checked_pair(p, fluxes, adjoint)
+    weighted = np.zeros((len(p), 3))
+    for k in range(z.shape[1]):
+        weights = np.abs(gradients(p, t, z[:, k], _gradient_method(recovery)))
+        for i in range(2):
+            weighted += weights[:, [i]] * absolute(hessians(p, t, f[:, k, i], recovery))
+    largest = float(np.abs(tensor.unpack(weighted)).max())
+    if not largest > 0:
+        raise MetricError(
+            "the goal does not ask for any size: the adjoint is constant, or the fluxes are linear "
+            "wherever it changes"
+        )
+    curvature = absolute(weighted, _FLATNESS * largest)
+    limits = Limits(h_min, h_max, max_anisotropy, gradation, law)
+    shape = lp_metric(tensor.limit(curvature, max_anisotropy=max_anisotropy), 1)
+    goal = count_goal(p, t, target_vertices, complexity)
+    return Background(p, t, scaled_to(goal, shape, p, t, limits))
+
+
+def _gradient_method(recovery: str) -> str:
+    return "least squares" if recovery == "least squares" else "projection"
+
+
+def _checked_pair(points: Floats, fluxes: ArrayLike, adjoint: ArrayLike) -> tuple[Floats, Floats]:
+    """Fluxes (n, k, 2) and adjoints (n, k) that belong together."""
+    n = len(points)
+    f = np.asarray(as_numbers(fluxes, "fluxes"), np.float64)
+    z = np.asarray(as_numbers(adjoint, "the adjoint"), np.float64)
+    if f.ndim == 2:
+        f = f[:, None, :]
+    if z.ndim == 1:
+        z = z[:, None]
+    if f.ndim != 3 or f.shape[0] != n or f.shape[2] != 2:
+        raise MetricError(
+            f"fluxes must have the shape ({n}, 2) or ({n}, k, 2), not {np.shape(fluxes)}"
+        )
+    if z.shape != f.shape[:2]:
+        raise MetricError(
+            f"the adjoint must have the shape ({n}, {f.shape[1]}), one for each flux, not "
+            f"{np.shape(adjoint)}"
+        )
+    for array, what in ((f.reshape(n, -1), "flux"), (z, "adjoint")):
+        bad = ~np.isfinite(array).all(axis=1)
+        if bad.any():
+            i = int(bad.argmax())
+            raise MetricError(f"the {what} at {place_of(points, i)} is not finite")
+    return f, z
