@@ -4,6 +4,7 @@
 ``.vtu``           VTK XML, for ParaView and pyvista; keeps everything as it is
 ``.msh``           Gmsh, version 4.1 (or 2.2), binary (or text); names are physical groups
 ``.mesh .meshb``   Medit, for Mmg, BAMG, FreeFEM; metric and fields in ``.sol``, ``.solb`` beside it
+``.xdmf``          for DOLFIN, FEniCSx, ParaView; keeps everything, its arrays in ``.h5`` beside it
 =================  ==============================================================================
 
 Points, triangles, regions, constrained edges with their tags, and the names of both come back as

@@ -81,11 +81,28 @@ def _save_medit(path: Path, content: Content) -> dict[Path, bytes]:
     return {path: encode(content, binary=binary), **encode_companions(content, path)}
 
 
+def _load_xdmf(path: Path, fields: bool) -> Content:
+    from .xdmf import decode
+
+    data = read_bytes(path)
+    with located(path):
+        return decode(data, path.parent)
+
+
+def _save_xdmf(path: Path, content: Content) -> dict[Path, bytes]:
+    from .xdmf import encode
+
+    arrays = path.with_suffix(".h5")
+    xml, hdf = encode(content, arrays.name)
+    return {arrays: hdf, path: xml}
+
+
 FORMATS: dict[str, Format] = {
     ".vtu": Format(_load_vtu, _save_vtu),
     ".msh": Format(_load_gmsh, _save_gmsh, frozenset({"version", "binary"})),
     ".mesh": Format(_load_medit, _save_medit),
     ".meshb": Format(_load_medit, _save_medit),
+    ".xdmf": Format(_load_xdmf, _save_xdmf),
 }
 """Format by extension in lower case."""
 

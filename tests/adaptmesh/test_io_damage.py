@@ -18,6 +18,7 @@ WAYS = {
     "msh22 text": ("a.msh", {"version": "2.2", "binary": False}),
     "mesh": ("a.mesh", {}),
     "meshb": ("a.meshb", {}),
+    "xdmf": ("a.xdmf", {}),
     "sol": ("a.sol", {}),
     "solb": ("a.solb", {}),
 }

@@ -1,12 +1,16 @@
 """Our files in the programs that they are for, and theirs here."""
 
 import contextlib
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import metrics
 from adaptmesh import io
+from adaptmesh.errors import FormatError
 from adaptmesh.mesh import Mesh
 
 NAMES = {"in let": 3, "Größe": 5}
@@ -41,6 +45,80 @@ def assert_same_up_to_order(first, second):
     for cells, tags in (("triangles", "regions"), ("edges", "edge_tags")):
         one, two = (placed(getattr(m, cells), getattr(m, tags), m.points) for m in (first, second))
         assert one == two
+
+
+# ------------------------------------------------------------------------------- DOLFINx and XDMF
+
+BY_DOLFINX = """
+import sys
+from mpi4py import MPI
+from dolfinx.io import XDMFFile
+
+with XDMFFile(MPI.COMM_SELF, sys.argv[1], "r") as file:
+    mesh = file.read_mesh(name="mesh")
+    cells = file.read_meshtags(mesh, name="cell_tags")
+    mesh.topology.create_connectivity(1, 2)
+    facets = file.read_meshtags(mesh, name="facet_tags")
+with XDMFFile(MPI.COMM_SELF, sys.argv[2], "w") as file:
+    file.write_mesh(mesh)
+    file.write_meshtags(cells)
+    file.write_meshtags(facets)
+"""
+
+
+@pytest.fixture(scope="module")
+def dolfinx_python():
+    """An interpreter that has DOLFINx: Debian's is not the one of a virtual environment."""
+    for python in (sys.executable, "/usr/bin/python3"):
+        probe = [python, "-c", "import dolfinx.io"]
+        if Path(python).exists() and subprocess.run(probe, capture_output=True).returncode == 0:
+            return python
+    pytest.skip("no Python here has dolfinx")
+
+
+def test_dolfinx_reads_and_writes_xdmf(tmp_path, dolfinx_python):
+    mesh = a_mesh()
+    ours, theirs = tmp_path / "ours.xdmf", tmp_path / "theirs.xdmf"
+    io.write(ours, mesh)
+    done = subprocess.run(
+        [dolfinx_python, "-c", BY_DOLFINX, ours, theirs], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert_same_up_to_order(io.read(theirs), mesh)
+
+
+def test_meshio_writes_xdmf(tmp_path):
+    meshio, mesh = pytest.importorskip("meshio"), a_mesh()
+    cells = [("triangle", mesh.triangles), ("line", mesh.edges)]
+    for k in (1, 2):  # one kind of cell, and two
+        tags = [mesh.regions, mesh.edge_tags][:k]
+        path = tmp_path / f"{k}.xdmf"
+        meshio.Mesh(mesh.points, cells[:k], {"u": mesh.points[:, 0]}, {"cell_tags": tags}).write(
+            path
+        )
+        read = io.read(path)
+        np.testing.assert_array_equal(read.triangles, mesh.triangles)
+        np.testing.assert_array_equal(read.regions, mesh.regions)
+        np.testing.assert_array_equal(read.edges, mesh.edges[: len(read.edges)])
+        np.testing.assert_array_equal(io.read_fields(path)["u"], mesh.points[:, 0])
+
+
+def test_inline_numbers_and_time_series(tmp_path):
+    path = tmp_path / "a.xdmf"
+    grid = """<Grid Name="g" GridType="Uniform"><Topology TopologyType="Triangle">
+        <DataItem Dimensions="1 3" NumberType="Int" Format="XML">0 1 2</DataItem></Topology>
+        <Geometry GeometryType="XY"><DataItem Dimensions="3 2" Format="XML">0 0 1 0 0 1</DataItem>
+        </Geometry></Grid>"""
+    path.write_text(f"<Xdmf><Domain>{grid}</Domain></Xdmf>")
+    assert io.read(path).points.tolist() == [[0, 0], [1, 0], [0, 1]]
+    series = f'<Grid GridType="Collection" CollectionType="Temporal">{grid}</Grid>'
+    path.write_text(f"<Xdmf><Domain>{series}</Domain></Xdmf>")
+    with pytest.raises(FormatError, match="Temporal"):
+        io.read(path)
+    outside = grid.replace(">0 1 2<", ">../b.h5:/x<").replace("XML", "HDF", 1)
+    path.write_text(f"<Xdmf><Domain>{outside}</Domain></Xdmf>")
+    with pytest.raises(FormatError, match="not to a file beside it"):
+        io.read(path)
 
 
 # ------------------------------------------------------------------------------------------- Gmsh
