@@ -23,6 +23,7 @@ from .errors import (
 from .generate import generate, predict
 from .io import read, read_fields, read_sol, write, write_sol
 from .mesh import Mesh
+from .overlay import Overlay
 from .plot import plot
 from .report import Report, measure
 from .transfer import transfer
@@ -39,6 +40,7 @@ __all__ = [
     "FormatError",
     "Mesh",
     "MetricError",
+    "Overlay",
     "Report",
     "TransferError",
     "Validity",

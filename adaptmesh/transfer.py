@@ -10,16 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .errors import TransferError
+from .location import OUTSIDE, check_distances, located, longest_edges
 from .mesh import Mesh
+from .overlay import Overlay
 from .spaces import Field, Floats, Ints, Space, as_field, as_fields, basis
 
-METHODS = ("interpolation",)
-
-OUTSIDE = 0.25
-"""How far outside of the old mesh a node may be, relative to the longest edge beside it.
-
-The chords of a circle, cut into edges of a right angle each, are off by a fifth of their length.
-"""
+METHODS = ("interpolation", "conservative")
 
 
 @overload
@@ -30,6 +26,7 @@ def transfer(
     *,
     method: str = ...,
     space: str | Mapping[str, str] | None = ...,
+    keep_bounds: bool = ...,
     outside: float = ...,
 ) -> dict[str, NDArray[Any]]: ...
 @overload
@@ -40,6 +37,7 @@ def transfer(
     *,
     method: str = ...,
     space: str | None = ...,
+    keep_bounds: bool = ...,
     outside: float = ...,
 ) -> NDArray[Any]: ...
 def transfer(
@@ -49,6 +47,7 @@ def transfer(
     *,
     method: str = "interpolation",
     space: Any = None,
+    keep_bounds: bool = False,
     outside: float = OUTSIDE,
 ) -> Any:
     """Carry fields from one mesh to another of the same domain.
@@ -61,36 +60,52 @@ def transfer(
         for each vertex and then for the midpoint of each of `Mesh.unique_edges`.
     old_mesh, new_mesh : Mesh
         What they cover should be the same, up to the chords of curved boundaries.
-    method : {"interpolation"}, optional
+    method : {"interpolation", "conservative"}, optional
         ``"interpolation"``: the value of the old field at each node of the new mesh, for P0 at the
-        centroid.
+        centroid. Cheap, and exact where a node is a vertex of both meshes.
+        ``"conservative"``: the L² projection; among the fields of the new space the one nearest to
+        the old field. Its integral is that of the old field, to rounding.
     space : {"P0", "P1", "P2"}, or mapping of str to these, optional
         Needed only where the length fits two spaces.
+    keep_bounds : bool, optional
+        For the conservative method: no value beyond those that the old field has on the triangles
+        around, and still the same integral. Without, a steep field overshoots. Interpolated nodal
+        values are values of the old field anyway.
     outside : float, optional
         A node of the new mesh outside of the old takes the value at the nearest point of its
         border, if it is no farther than this times the longest edge of the old triangle there or of
-        the new triangles at the node.
+        the new triangles at the node. So do, for the conservative method, new triangles outside.
 
     Returns
     -------
     array, or dict of str to array
-        In the same spaces on the new mesh, of the same trailing shape.
+        In the same spaces on the new mesh, of the same trailing shape. For a mesh with the same
+        points and triangles, the same values.
 
     Raises
     ------
     TransferError
-        A field is of the wrong length, or not finite; a node is too far outside; a mesh is broken.
+        A field is of the wrong length, or not finite; a node is too far outside; the meshes do not
+        overlap; a mesh is broken.
+
+    Notes
+    -----
+    Where the domains differ, by the chords of a curved boundary, the old field is extended: on the
+    uncovered part of a new triangle by its mean on the covered part. The integral of the new field
+    is then that of the old over the common part, plus that of the extension; `Overlay` tells how
+    large these parts are. Constants stay what they are. Formulas and sources: :doc:`/transfer`.
     """
     if method not in METHODS:
         raise TransferError(f"method={method!r} is none of {', '.join(map(repr, METHODS))}")
-    if not outside >= 0:
-        raise TransferError(f"outside={outside!r}: a share of an edge is wanted, 0 or more")
+    if is_same_mesh(old_mesh, new_mesh):
+        method = "interpolation"
+    if method == "conservative":
+        overlay = Overlay(old_mesh, new_mesh, outside=outside)
+        return overlay.project(values, space=space, keep_bounds=keep_bounds)
     if isinstance(values, Mapping):
-        fields = as_fields(values, old_mesh, space)
-    else:
-        fields = {"": as_field(values, old_mesh, space, "the field")}
-    new = interpolated(fields, old_mesh, new_mesh, outside)
-    return new if isinstance(values, Mapping) else new[""]
+        return interpolated(as_fields(values, old_mesh, space), old_mesh, new_mesh, outside)
+    field = as_field(values, old_mesh, space, "the field")
+    return interpolated({"": field}, old_mesh, new_mesh, outside)[""]
 
 
 def interpolated(
@@ -99,7 +114,7 @@ def interpolated(
     """The old fields at the nodes of the new mesh."""
     if is_same_mesh(old, new):
         return {name: field.like(field.columns.copy()) for name, field in fields.items()}
-    locator = located(old)
+    locator = located(old, "old")
     places: dict[str, tuple[Ints, Floats]] = {}
     out = {}
     for name, field in fields.items():
@@ -118,44 +133,13 @@ def is_same_mesh(old: Mesh, new: Mesh) -> bool:
     return np.array_equal(old.points, new.points) and np.array_equal(old.triangles, new.triangles)
 
 
-def located(mesh: Mesh) -> _core.Locator:
-    """What finds points in the triangles of a mesh."""
-    flat = np.flatnonzero(~(mesh.areas > 0))
-    if len(flat):
-        t = int(flat[0])
-        raise TransferError(
-            f"triangle {t} = {tuple(mesh.triangles[t].tolist())} has the area {mesh.areas[t]:g}: "
-            "triangles must be counter-clockwise"
-        )
-    try:
-        return _core.Locator(mesh.points, mesh.triangles)
-    except ValueError as error:
-        raise TransferError(f"the triangles are not a mesh: {error}") from error
-
-
 def _places(locator: _core.Locator, old: Mesh, space: Space, outside: float) -> tuple[Ints, Floats]:
     """The old triangle of each new node, and its barycentric coordinates there."""
     triangles, weights, distances = locator.locate(space.nodes)
     off = np.flatnonzero(distances > 0)
-    if len(off):
-        near = np.maximum(longest_edges(old)[triangles[off]], _longest_edges_at_nodes(space)[off])
-        far = off[distances[off] > outside * near]
-        if len(far):
-            worst = int(far[np.argmax(distances[far])])
-            x, y = space.nodes[worst].tolist()
-            raise TransferError(
-                f"{len(far)} nodes of the new mesh lie far outside of the old; {space.name} node "
-                f"{worst} at ({x:g}, {y:g}) by {distances[worst]:g}: the meshes must cover the "
-                "same domain (outside=inf takes the nearest value of the border all the same)"
-            )
+    edges = np.maximum(longest_edges(old)[triangles[off]], _longest_edges_at_nodes(space)[off])
+    check_distances(space.nodes[off], distances[off], edges, outside, f"{space.name} nodes")
     return triangles, weights
-
-
-def longest_edges(mesh: Mesh) -> Floats:
-    """Length of the longest edge of each triangle, (m,)."""
-    p = mesh.points[mesh.triangles]
-    out: Floats = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2).max(axis=1)
-    return out
 
 
 def _longest_edges_at_nodes(space: Space) -> Floats:

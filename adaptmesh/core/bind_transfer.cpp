@@ -1,10 +1,17 @@
 // What carries fields from mesh to mesh, as Python sees it.
 #include "adaptmesh/core/bindings.hpp"
+#include "adaptmesh/core/moments.hpp"
+#include "adaptmesh/core/overlay.hpp"
+#include "adaptmesh/core/ranges.hpp"
 #include "metrics/core/locator.hpp"
 
+using adaptmesh::Overlay;
 using metrics::Locator;
 
 namespace {
+
+using Table = nb::ndarray<const double, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
+using Nodes = nb::ndarray<const std::int32_t, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
 
 void make_locator(Locator* self, const Points& points, const IndexTriples& triangles) {
     nb::gil_scoped_release release;
@@ -29,6 +36,76 @@ nb::tuple locate(const Locator& locator, const Points& points) {
                           to_numpy(std::move(distances), {n}));
 }
 
+void make_overlay(Overlay* self, const Locator& older, const Locator& newer) {
+    SignalPoll poll;
+    nb::gil_scoped_release release;
+    new (self) Overlay(older, newer, poll);
+}
+
+nb::tuple pairs(const Overlay& overlay) {
+    const auto& first = overlay.first();
+    std::vector<std::int64_t> starts(first.begin(), first.end());
+    std::vector<std::int32_t> olds = overlay.olds();
+    std::vector<double> shares = overlay.shares();
+    const std::size_t m = starts.size(), n = olds.size();
+    return nb::make_tuple(to_numpy(std::move(starts), {m}), to_numpy(std::move(olds), {n}),
+                          to_numpy(std::move(shares), {n}));
+}
+
+// The new triangles with the border of the old mesh, and where their centroids are in it.
+nb::tuple at_border(const Overlay& overlay) {
+    std::vector<std::int32_t> numbers, triangles;
+    std::vector<double> distances;
+    for (std::int32_t k = 0; k < overlay.new_mesh().triangle_count(); ++k) {
+        if (!overlay.is_at_border(k)) continue;
+        const metrics::Location place = overlay.place_of(k);
+        numbers.push_back(k);
+        triangles.push_back(place.triangle);
+        distances.push_back(place.outside);
+    }
+    const std::size_t n = numbers.size();
+    return nb::make_tuple(to_numpy(std::move(numbers), {n}), to_numpy(std::move(triangles), {n}),
+                          to_numpy(std::move(distances), {n}));
+}
+
+nb::object moments(const Overlay& overlay, const Table& values, const Nodes& old_nodes,
+                   const Nodes& new_nodes, std::size_t size) {
+    const std::size_t columns = values.shape(1);
+    std::vector<double> out(size * columns, 0.0);
+    {
+        SignalPoll poll;
+        nb::gil_scoped_release release;
+        const auto compute = [&](auto degree) {
+            adaptmesh::moments<decltype(degree)>(overlay, values.data(), columns, old_nodes.data(),
+                                                 new_nodes.data(), out.data(), poll);
+        };
+        switch (new_nodes.shape(1)) {
+            case 1:
+                compute(adaptmesh::Constant());
+                break;
+            case 3:
+                compute(adaptmesh::Linear());
+                break;
+            default:
+                compute(adaptmesh::Quadratic());
+        }
+    }
+    return to_numpy(std::move(out), {size, columns});
+}
+
+nb::tuple ranges(const Overlay& overlay, const Table& low, const Table& high, const Nodes& nodes,
+                 std::size_t size) {
+    const std::size_t columns = low.shape(1);
+    std::vector<double> least(size * columns, INFINITY), most(size * columns, -INFINITY);
+    {
+        nb::gil_scoped_release release;
+        adaptmesh::ranges(overlay, low.data(), high.data(), columns, nodes.data(), nodes.shape(1),
+                          least.data(), most.data());
+    }
+    return nb::make_tuple(to_numpy(std::move(least), {size, columns}),
+                          to_numpy(std::move(most), {size, columns}));
+}
+
 }  // namespace
 
 void bind_transfer(nb::module_& m) {
@@ -36,4 +113,15 @@ void bind_transfer(nb::module_& m) {
         .def("__init__", &make_locator, nb::arg("points"), nb::arg("triangles"))
         .def("locate", &locate, nb::arg("points"),
              "Triangles (k,), barycentric coordinates (k, 3), distances from the mesh (k,).");
+    nb::class_<Overlay>(m, "Overlay", "Which triangles of two meshes overlap.")
+        .def("__init__", &make_overlay, nb::arg("older"), nb::arg("newer"), nb::keep_alive<1, 2>(),
+             nb::keep_alive<1, 3>())
+        .def("pairs", &pairs,
+             "First pair of each new triangle (m + 1,), old triangles, shares of their areas.")
+        .def("at_border", &at_border,
+             "New triangles at the border of the old mesh, the old ones nearest, distances.")
+        .def("moments", &moments, nb::arg("values"), nb::arg("old_nodes"), nb::arg("new_nodes"),
+             nb::arg("size"), "Integrals (size, k) of columns (n, k) with each new basis function.")
+        .def("ranges", &ranges, nb::arg("low"), nb::arg("high"), nb::arg("nodes"), nb::arg("size"),
+             "Least and largest of (m, k) on the old triangles around new nodes, both (size, k).");
 }

@@ -1,0 +1,119 @@
+// Which triangles of two meshes overlap (Farrell and Maddison: Conservative interpolation between
+// volume meshes by local Galerkin projection. Computer Methods in Applied Mechanics and Engineering
+// 200, 2011): for each new triangle, the old one that has its centroid, and from there over every
+// old edge that runs through it, until no more is found.
+//
+// A new triangle is convex, and where the old mesh covers it, the old triangles in it hang
+// together. Where the border of the old mesh runs through it (the chords of a curve differ, or a
+// hole is there), they may not; then a tree of boxes names all that could be met.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "adaptmesh/core/overlap.hpp"
+#include "metrics/core/locator.hpp"
+
+namespace adaptmesh {
+
+using metrics::Locator;
+
+class Overlay {
+  public:
+    using Index = metrics::Index;
+
+    template <typename Poll>
+    Overlay(const Locator& older, const Locator& newer, Poll& poll)
+        : old_(older), new_(newer), found_for_(older.triangle_count(), -1) {
+        first_.push_back(0);
+        for (Index k = 0; k < new_.triangle_count(); ++k) {
+            if (k % 1024 == 0) poll();
+            find_old_under(k);
+            first_.push_back(olds_.size());
+        }
+    }
+
+    const Locator& old_mesh() const { return old_; }
+    const Locator& new_mesh() const { return new_; }
+
+    // The pairs of new triangle k are first()[k] to first()[k + 1]: the old triangles, and the
+    // share of its area that each has in common with k.
+    const std::vector<std::size_t>& first() const { return first_; }
+    const std::vector<Index>& olds() const { return olds_; }
+    const std::vector<double>& shares() const { return shares_; }
+
+    // Whether the border of the old mesh runs through a new triangle, or past it.
+    bool is_at_border(Index k) const { return at_border_[k]; }
+
+    // Where the centroid of a new triangle lies in the old mesh, or nearest to it.
+    metrics::Location place_of(Index k) const {
+        const Triangle3 t = triangle_of(new_, k);
+        return old_.locate((t.at[0].x + t.at[1].x + t.at[2].x) / 3,
+                           (t.at[0].y + t.at[1].y + t.at[2].y) / 3, Locator::NO_TRIANGLE);
+    }
+
+    static Triangle3 triangle_of(const Locator& mesh, Index t) {
+        Triangle3 out;
+        for (int i = 0; i < 3; ++i) {
+            const Locator::Vertex& v = mesh.vertex(mesh.corner(t, i));
+            out.at[i] = {v.x, v.y};
+        }
+        return out;
+    }
+
+    static double area(const Triangle3& t) {
+        const double ux = t.at[1].x - t.at[0].x, uy = t.at[1].y - t.at[0].y;
+        const double vx = t.at[2].x - t.at[0].x, vy = t.at[2].y - t.at[0].y;
+        return 0.5 * (ux * vy - uy * vx);
+    }
+
+  private:
+    void find_old_under(Index k) {
+        const Triangle3 newer = triangle_of(new_, k);
+        bool at_border = !spread_from(place_of(k).triangle, k, newer);
+        at_border_.push_back(at_border);
+        if (!at_border) return;
+        metrics::Box box;
+        for (const Point& p : newer.at) box.include(p.x, p.y);
+        old_.near(box, [&](Index t) { spread_from(t, k, newer); });
+    }
+
+    // Adds what overlaps and hangs together with old triangle `start`. False if that is nothing, or
+    // if the border of the old mesh was met.
+    bool spread_from(Index start, Index k, const Triangle3& newer) {
+        if (found_for_[start] == k) return true;
+        bool is_covered = try_add(start, k, newer);
+        while (!waiting_.empty()) {
+            const Index next = waiting_.back();
+            waiting_.pop_back();
+            if (next == Locator::NO_TRIANGLE)
+                is_covered = false;
+            else if (found_for_[next] != k)
+                try_add(next, k, newer);
+        }
+        return is_covered;
+    }
+
+    bool try_add(Index t, Index k, const Triangle3& newer) {
+        const Triangle3 older = triangle_of(old_, t);
+        const Overlap overlap(older, newer);
+        if (overlap.empty()) return false;
+        found_for_[t] = k;
+        const double share = overlap.share_of_old();
+        if (share != 0) olds_.push_back(t), shares_.push_back(share);
+        for (int i = 0; i < 3; ++i) {
+            if (overlap.has_old_edge(i)) waiting_.push_back(old_.neighbour(t, i));
+        }
+        return true;
+    }
+
+    const Locator &old_, &new_;
+    std::vector<std::size_t> first_;
+    std::vector<Index> olds_;
+    std::vector<double> shares_;
+    std::vector<bool> at_border_;
+    std::vector<Index> found_for_;  // of each old triangle, the last new one it was found for
+    std::vector<Index> waiting_;
+};
+
+}  // namespace adaptmesh
