@@ -4,6 +4,7 @@
 ``.vtu``           VTK XML, for ParaView and pyvista; keeps everything as it is
 ``.msh``           Gmsh, version 4.1 (or 2.2), binary (or text); names are physical groups
 ``.mesh .meshb``   Medit, for Mmg, BAMG, FreeFEM; metric and fields in ``.sol``, ``.solb`` beside it
+``.ele``           Triangle, with ``.node`` and ``.poly`` beside it; names are in comments
 ``.xdmf``          for DOLFIN, FEniCSx, ParaView; keeps everything, its arrays in ``.h5`` beside it
 =================  ==============================================================================
 

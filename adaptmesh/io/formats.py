@@ -97,12 +97,25 @@ def _save_xdmf(path: Path, content: Content) -> dict[Path, bytes]:
     return {arrays: hdf, path: xml}
 
 
+def _load_triangle(path: Path, fields: bool) -> Content:
+    from .triangle import decode
+
+    return decode(path)
+
+
+def _save_triangle(path: Path, content: Content) -> Mapping[Path, bytes]:
+    from .triangle import encode
+
+    return encode(content, path)
+
+
 FORMATS: dict[str, Format] = {
     ".vtu": Format(_load_vtu, _save_vtu),
     ".msh": Format(_load_gmsh, _save_gmsh, frozenset({"version", "binary"})),
     ".mesh": Format(_load_medit, _save_medit),
     ".meshb": Format(_load_medit, _save_medit),
     ".xdmf": Format(_load_xdmf, _save_xdmf),
+    ".ele": Format(_load_triangle, _save_triangle),
 }
 """Format by extension in lower case."""
 

@@ -19,6 +19,7 @@ WAYS = {
     "mesh": ("a.mesh", {}),
     "meshb": ("a.meshb", {}),
     "xdmf": ("a.xdmf", {}),
+    "ele": ("a.ele", {}),
 }
 
 
