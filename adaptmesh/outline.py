@@ -21,6 +21,8 @@ Ints = NDArray[np.int32]
 # rounding and text files of 12 digits leave of a straight boundary.
 STRAIGHT = 1e-12
 
+OUTSIDE = -(2**40)  # a number that no region has
+
 
 def domain_of_mesh(mesh: Mesh) -> Domain:
     """Corners, segments, holes, regions and names of a mesh.
@@ -31,7 +33,7 @@ def domain_of_mesh(mesh: Mesh) -> Domain:
     """
     if not len(mesh.triangles):
         raise DomainError("the mesh has no triangles, so it covers no domain")
-    edges, tags = _with_border(mesh)
+    edges, tags = with_interfaces(mesh)
     segments, segment_tags = [], []
     tolerance = STRAIGHT * float(np.ptp(mesh.points, axis=0).max())
     for chain, tag in _chains(edges, tags, _sides(mesh, edges)):
@@ -72,23 +74,25 @@ def _triangles_beside(triangles: Ints, edges: Ints, n_points: int) -> tuple[Ints
     return left_of(edges[:, 0], edges[:, 1]), left_of(edges[:, 1], edges[:, 0])
 
 
-def _with_border(mesh: Mesh) -> tuple[Ints, Ints]:
-    """The constrained edges and their tags; other border edges come with tag 0."""
+def with_interfaces(mesh: Mesh) -> tuple[Ints, Ints]:
+    """The constrained edges and their tags; then, with tag 0, what else bounds or parts regions."""
+    edges = mesh.unique_edges
+    sides = _sides(mesh, edges)
     n = len(mesh.points)
-    halves, _ = _half_edges(mesh.triangles)
-    keys, count = np.unique(edge_keys(halves[:, 0], halves[:, 1], n), return_counts=True)
-    missing = np.setdiff1d(keys[count == 1], edge_keys(mesh.edges[:, 0], mesh.edges[:, 1], n))
-    border = np.stack([missing // n, missing % n], axis=1).astype(np.int32)
+    known = edge_keys(mesh.edges[:, 0], mesh.edges[:, 1], n)
+    parting = sides[:, 0] != sides[:, 1]
+    parting &= ~np.isin(edge_keys(edges[:, 0], edges[:, 1], n), known)
+    missing = edges[parting]
     return (
-        np.concatenate([mesh.edges, border]),
-        np.concatenate([mesh.edge_tags, np.zeros(len(border), np.int32)]),
+        np.concatenate([mesh.edges, missing]),
+        np.concatenate([mesh.edge_tags, np.zeros(len(missing), np.int32)]),
     )
 
 
 def _sides(mesh: Mesh, edges: Ints) -> Ints:
-    """The two regions that each edge separates, smaller first, -1 for the outside."""
+    """The two regions that each edge separates, smaller first, `OUTSIDE` for the outside."""
     left, right = _triangles_beside(mesh.triangles, edges, len(mesh.points))
-    regions = np.append(mesh.regions, np.int32(-1))
+    regions = np.append(mesh.regions.astype(np.int64), OUTSIDE)
     return np.sort(np.stack([regions[left], regions[right]], axis=1), axis=1)
 
 

@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 
 import adaptmesh
+import adaptmesh.convert
 import metrics
 
-MODULES = [adaptmesh, adaptmesh.curves, metrics, metrics.tensor]
+MODULES = [adaptmesh, adaptmesh.convert, adaptmesh.curves, metrics, metrics.tensor]
 PAGE = Path(__file__).parent.parent / "docs" / "api.md"
 
 

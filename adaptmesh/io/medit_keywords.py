@@ -70,7 +70,7 @@ class TextFile:
     real, integer = "f8", "i8"
 
     def __init__(self, data: bytes) -> None:
-        self.cursor = TextCursor(re.sub(rb"#[^\n]*", b"", data))
+        self.cursor = TextCursor(re.sub(rb"\"[^\"\n]*\"|#[^\n]*", b"", data))
         if self.cursor.word() != b"MeshVersionFormatted":
             raise FormatError("does not start with MeshVersionFormatted: it is no Medit file")
         one(self.cursor)

@@ -95,6 +95,16 @@ def test_wrong_number_of_values(plate):
         am.adapt(mesh, np.full(len(mesh.points), -1.0))
 
 
+def test_regions_part_without_constrained_edges_between_them(plate):
+    mesh = am.generate(plate, 0.2)
+    names = dict(mesh.region_names)
+    bare = am.Mesh(mesh.points, mesh.triangles, regions=mesh.regions, region_names=names)
+    again = am.adapt(bare, 0.2)
+    for name in names:
+        area = mesh.areas[mesh.triangles_in(name)].sum()
+        assert again.areas[again.triangles_in(name)].sum() == pytest.approx(area)
+
+
 def test_an_empty_mesh_covers_no_domain():
     with pytest.raises(am.DomainError, match="no triangles"):
         am.Domain.of_mesh(am.Mesh(np.empty((0, 2)), np.empty((0, 3))))

@@ -451,3 +451,10 @@ def test_msh_two_groups_of_one_surface(file):
 def test_msh_damage(file, content, message):
     with pytest.raises(FormatError, match=message):
         io.read(file(".msh", content))
+
+
+def test_medit_with_texts_as_bamg_and_freefem_write_them(tmp_path):
+    head = 'MeshVersionFormatted 1\nDimension\n2\nIdentifier\n";2, Date: 26/11/25 # 1"\n'
+    head += 'Geometry\n"b.mesh.gmsh"\n'
+    (tmp_path / "a.mesh").write_text(medit(head=head))
+    np.testing.assert_array_equal(io.read(tmp_path / "a.mesh").points, SQUARE)
