@@ -25,6 +25,8 @@ from .io import read, read_fields, read_sol, write, write_sol
 from .mesh import Mesh
 from .overlay import Overlay
 from .plot import plot
+from .raw import Outline
+from .repair import Repair, Repairs, repair
 from .report import Report, measure
 from .transfer import transfer
 from .triangulate import delaunay
@@ -40,7 +42,10 @@ __all__ = [
     "FormatError",
     "Mesh",
     "MetricError",
+    "Outline",
     "Overlay",
+    "Repair",
+    "Repairs",
     "Report",
     "TransferError",
     "Validity",
@@ -55,6 +60,7 @@ __all__ = [
     "read_domain",
     "read_fields",
     "read_sol",
+    "repair",
     "transfer",
     "validate",
     "write",

@@ -1,4 +1,4 @@
-"""The command line: ``adaptmesh generate | adapt | check | plot | convert | demo``.
+"""The command line: ``adaptmesh generate | adapt | check | repair | plot | convert | demo``.
 
 Commands are thin: each reads, calls the one library function of its name, and says what came of
 it. Heavy modules are imported inside the commands, so that ``--help`` comes at once.
@@ -63,6 +63,16 @@ MeshFile = Annotated[
     Path,
     typer.Argument(metavar="MESH", exists=True, dir_okay=False, help="Mesh: .vtu .msh .mesh ..."),
 ]
+OutlineFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="DOMAIN",
+        exists=True,
+        dir_okay=False,
+        help="What to mesh: polygons (.geojson .json), Triangle's .poly, or a mesh "
+        "(.msh .mesh .vtu ...) whose domain is meshed anew.",
+    ),
+]
 Size = Annotated[str | None, typer.Option("--size", "-s", metavar="EXPR", help=SIZE_HELP)]
 Metric = Annotated[
     Path | None,
@@ -88,6 +98,12 @@ MaxVertices = Annotated[
 Placement = Annotated[
     str | None,
     typer.Option(metavar="NAME", help="How new points are placed, e.g. 'edges': along long edges."),
+]
+Tolerance = Annotated[
+    float | None,
+    typer.Option(
+        min=0.0, metavar="LENGTH", help="What is nearer is made one; 1e-9 of the extent if absent."
+    ),
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
 
@@ -116,25 +132,17 @@ def _options(
     epilog="Example: adaptmesh generate coast.geojson --size '1 + 0.1*hypot(x, y)' -o a.vtu"
 )
 def generate(
-    domain: Annotated[
-        Path,
-        typer.Argument(
-            metavar="DOMAIN",
-            exists=True,
-            dir_okay=False,
-            help="What to mesh: polygons (.geojson .json), Triangle's .poly, or a mesh "
-            "(.msh .mesh .vtu ...) whose domain is meshed anew.",
-        ),
-    ],
+    domain: OutlineFile,
     output: Output,
     size: Size = None,
     metric: Metric = None,
     plot: Picture = None,
     max_vertices: MaxVertices = None,
     placement: Placement = None,
-    make_valid: Annotated[
-        bool, typer.Option("--make-valid", help="Repair polygons that cross themselves.")
+    repair: Annotated[
+        bool, typer.Option("--repair", help="Repair the domain first, and say what was done.")
     ] = False,
+    tolerance: Tolerance = None,
     quiet: Quiet = False,
 ) -> None:
     """Mesh a domain: polygons, a .poly file, or the domain of another mesh."""
@@ -142,7 +150,7 @@ def generate(
         import adaptmesh as am
 
         _check_outputs(output, plot)
-        outline, carrier = _outline_and_mesh(domain, make_valid)
+        outline, carrier = _outline_and_mesh(domain, repair, tolerance, quiet)
         control = _control_space(size, metric, carrier)
         if not quiet:
             typer.echo(f"predicted: about {round(am.predict(outline, control)):,} vertices")
@@ -187,6 +195,29 @@ def check(mesh: MeshFile, size: Size = None, metric: Metric = None) -> None:
             typer.echo(f"\n{am.measure(checked, _control_space(size, metric, checked))}")
         if not validity.ok:
             raise typer.Exit(EXIT_BAD)
+
+
+@app.command(epilog="Example: adaptmesh repair coast.geojson --tolerance 0.01 -o clean.geojson")
+def repair(
+    domain: OutlineFile,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE.geojson", dir_okay=False)],
+    tolerance: Tolerance = None,
+    quiet: Quiet = False,
+) -> None:
+    """Repair an outline, say what was done, and write the regions as polygons."""
+    with _neat_errors():
+        import adaptmesh as am
+
+        from .geojson import GEOJSON_SUFFIXES, write_geojson
+
+        if output.suffix.lower() not in GEOJSON_SUFFIXES:
+            raise typer.BadParameter(f"--output ends in {' or '.join(GEOJSON_SUFFIXES)}")
+        clean, repairs = am.repair(domain, tolerance)
+        if not quiet:
+            typer.echo(f"{repairs}")
+        write_geojson(output, clean)
+        if not quiet:
+            typer.echo(f"wrote {output}: {len(clean.points):,} points")
 
 
 @app.command(
@@ -293,14 +324,23 @@ def _check_outputs(mesh: Path | None = None, picture: Path | None = None) -> Non
         check_path(picture)
 
 
-def _outline_and_mesh(path: Path, make_valid: bool) -> tuple[Domain, Mesh | None]:
+def _outline_and_mesh(
+    path: Path, repair: bool, tolerance: float | None, quiet: bool
+) -> tuple[Domain, Mesh | None]:
     """The domain in a file, and the mesh that it is the domain of, if the file holds one."""
     import adaptmesh as am
 
     from .domain_io import OUTLINE_SUFFIXES
 
+    if tolerance is not None and not repair:
+        raise typer.BadParameter("--tolerance is that of --repair")
+    if repair:
+        domain, repairs = am.repair(path, tolerance)
+        if not quiet:
+            typer.echo(f"{repairs}")
+        return domain, None
     if path.suffix.lower() in OUTLINE_SUFFIXES:
-        return am.read_domain(path, make_valid=make_valid), None
+        return am.read_domain(path), None
     mesh = am.read(path)
     return mesh.domain or am.Domain.of_mesh(mesh), mesh
 

@@ -20,6 +20,7 @@ Ints = NDArray[np.int32]
 
 
 LARGEST = 1e75  # coordinate: its fourth power is still a double
+OR_REPAIR = "or let adaptmesh.repair do it"
 
 
 class Domain:
@@ -64,14 +65,14 @@ class Domain:
         regions: Mapping[str, ArrayLike] | None = None,
         names: Mapping[str, Iterable[int]] | None = None,
     ) -> None:
-        self.points = _checked_points(points, "point")
+        self.points = checked_points(points, "point")
         self.segments = _checked_segments(segments, self.points)
         self.nesting = isinstance(holes, str)
         if self.nesting and holes != "nesting":
             raise DomainError(f"holes={holes!r}: give points inside the holes, or 'nesting'")
-        self.holes = _checked_points(() if self.nesting else holes, "hole", least=0)
+        self.holes = checked_points(() if self.nesting else holes, "hole", least=0)
         self.region_names, self.seeds, self.seed_regions = _checked_regions(regions or {})
-        self.names, self.segment_tags = _checked_names(names or {}, len(self.segments))
+        self.names, self.segment_tags = checked_names(names or {}, len(self.segments))
 
         triangles, labels, pieces, segment, is_boundary = self._triangulate()
         #: Constrained Delaunay triangles of the points alone, (m, 3), and their regions, (m,).
@@ -161,14 +162,20 @@ class Domain:
         if kind in ("crossing_segments", "overlapping_segments"):
             a, b = self._segment(i), self._segment(j)
             if kind == "crossing_segments":
-                return f"{a} and {b} cross at {place}: put a point there and divide both"
-            return f"{a} and {b} overlap near {place}: keep one, divided at the points on it"
+                return (
+                    f"{a} and {b} cross at {place}: put a point there and divide both, {OR_REPAIR}"
+                )
+            return (
+                f"{a} and {b} overlap near {place}: keep one, divided at the points on it, "
+                f"{OR_REPAIR}"
+            )
         messages = {
             "all_collinear": "all points lie on one line: there is nothing to mesh",
-            "duplicate_points": f"points {i} and {j} are the same, {place}: keep one of them",
+            "duplicate_points": f"points {i} and {j} are the same, {place}: keep one of them, "
+            f"{OR_REPAIR}",
             "open_boundary": "the boundary is not closed: the outside leaks in"
             + (f" past point {i} {place}, where a boundary ends" if i >= 0 else "")
-            + "; close it, or check `holes`",
+            + "; close it, or check `holes`; adaptmesh.repair closes gaps below its tolerance",
             "hole_outside": f"hole {i} at {place} is not inside the domain: move or remove it",
             "hole_on_segment": f"hole {i} at {place} lies on a segment: move it into the hole",
             "region_seed_outside": f"the point of {self._seed(i)} at {place} is not inside the "
@@ -198,7 +205,8 @@ def _read_only(array: NDArray[Any]) -> NDArray[Any]:
     return array
 
 
-def _checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
+def checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
+    """Coordinates (n, 2) that areas can be computed of, or a `DomainError`."""
     try:
         out = np.array(points, dtype=np.float64, order="C")
     except (TypeError, ValueError) as error:
@@ -223,7 +231,8 @@ def _checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
     return _read_only(out)
 
 
-def _checked_segments(segments: ArrayLike, points: Floats) -> Ints:
+def checked_pairs(segments: ArrayLike, n_points: int) -> Ints:
+    """Pairs of point numbers, (k, 2), or a `DomainError`."""
     raw = np.asarray(segments)
     if raw.size == 0:
         raise DomainError("no segments: say which points the boundary joins, e.g. Domain.polygon")
@@ -231,20 +240,26 @@ def _checked_segments(segments: ArrayLike, points: Floats) -> Ints:
         raise DomainError(f"segments must be a (k, 2) array, not one of shape {raw.shape}")
     if not np.issubdtype(raw.dtype, np.integer):
         raise DomainError(f"segments must be integers, pairs of point numbers, not {raw.dtype}")
-    bad = np.flatnonzero(((raw < 0) | (raw >= len(points))).any(axis=1))
+    bad = np.flatnonzero(((raw < 0) | (raw >= n_points)).any(axis=1))
     if len(bad):
         i = bad[0]
         raise DomainError(
             f"segment {i} joins points {raw[i, 0]} and {raw[i, 1]}, but the points are numbered "
-            f"0 to {len(points) - 1}"
+            f"0 to {n_points - 1}"
         )
-    out = np.array(raw, dtype=np.int32, order="C")
+    return _read_only(np.array(raw, dtype=np.int32, order="C"))
+
+
+def _checked_segments(segments: ArrayLike, points: Floats) -> Ints:
+    out = checked_pairs(segments, len(points))
     bad = np.flatnonzero((points[out[:, 0]] == points[out[:, 1]]).all(axis=1))
     if len(bad):
         i = bad[0]
         x, y = points[out[i, 0]]
-        raise DomainError(f"segment {i} has no length: its ends are both ({x:g}, {y:g}); remove it")
-    return _read_only(out)
+        raise DomainError(
+            f"segment {i} has no length: its ends are both ({x:g}, {y:g}); remove it, {OR_REPAIR}"
+        )
+    return out
 
 
 def _checked_regions(regions: Mapping[str, ArrayLike]) -> tuple[Mapping[str, int], Floats, Ints]:
@@ -252,18 +267,17 @@ def _checked_regions(regions: Mapping[str, ArrayLike]) -> tuple[Mapping[str, int
     seeds, owners = [], []
     for name, where in regions.items():
         numbers[str(name)] = len(numbers) + 1
-        points = _checked_points(
-            np.atleast_2d(np.asarray(where)), f"region {name!r} point", least=1
-        )
+        points = checked_points(np.atleast_2d(np.asarray(where)), f"region {name!r} point", least=1)
         seeds.append(points)
         owners += [numbers[str(name)]] * len(points)
     all_seeds = np.concatenate(seeds) if seeds else np.empty((0, 2))
     return MappingProxyType(numbers), _read_only(all_seeds), _read_only(np.array(owners, np.int32))
 
 
-def _checked_names(
+def checked_names(
     names: Mapping[str, Iterable[int]], n_segments: int
 ) -> tuple[Mapping[str, int], Ints]:
+    """The tag of each name and of each segment, (k,), or a `DomainError`."""
     numbers: dict[str, int] = {}
     tags = np.zeros(n_segments, np.int32)
     for name, segments in names.items():
@@ -297,7 +311,7 @@ def _join_rings(rings: Sequence[ArrayLike]) -> tuple[Floats, Ints]:
     """Points and segments of closed rings; rings that share a point share its number."""
     points, segments, n = [], [], 0
     for k, ring in enumerate(rings):
-        p = _checked_points(ring, f"ring {k}: point")
+        p = checked_points(ring, f"ring {k}: point")
         if (p[0] == p[-1]).all():
             p = p[:-1]
         if len(p) < 3:

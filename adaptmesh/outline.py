@@ -36,7 +36,8 @@ def domain_of_mesh(mesh: Mesh) -> Domain:
     edges, tags = with_interfaces(mesh)
     segments, segment_tags = [], []
     tolerance = STRAIGHT * float(np.ptp(mesh.points, axis=0).max())
-    for chain, tag in _chains(edges, tags, _sides(mesh, edges)):
+    beside = regions_beside(mesh.triangles, mesh.regions, edges, len(mesh.points))
+    for chain, tag in _chains(edges, tags, np.sort(beside, axis=1)):
         corners = _corners(mesh.points, chain, tolerance)
         segments += list(itertools.pairwise(corners))
         segment_tags += [tag] * (len(corners) - 1)
@@ -77,8 +78,8 @@ def _triangles_beside(triangles: Ints, edges: Ints, n_points: int) -> tuple[Ints
 def with_interfaces(mesh: Mesh) -> tuple[Ints, Ints]:
     """The constrained edges and their tags; then, with tag 0, what else bounds or parts regions."""
     edges = mesh.unique_edges
-    sides = _sides(mesh, edges)
     n = len(mesh.points)
+    sides = regions_beside(mesh.triangles, mesh.regions, edges, n)
     known = edge_keys(mesh.edges[:, 0], mesh.edges[:, 1], n)
     parting = sides[:, 0] != sides[:, 1]
     parting &= ~np.isin(edge_keys(edges[:, 0], edges[:, 1], n), known)
@@ -89,11 +90,11 @@ def with_interfaces(mesh: Mesh) -> tuple[Ints, Ints]:
     )
 
 
-def _sides(mesh: Mesh, edges: Ints) -> Ints:
-    """The two regions that each edge separates, smaller first, `OUTSIDE` for the outside."""
-    left, right = _triangles_beside(mesh.triangles, edges, len(mesh.points))
-    regions = np.append(mesh.regions.astype(np.int64), OUTSIDE)
-    return np.sort(np.stack([regions[left], regions[right]], axis=1), axis=1)
+def regions_beside(triangles: Ints, regions: Ints, edges: Ints, n_points: int) -> Ints:
+    """The regions on the left and right of each edge, (e, 2), `OUTSIDE` for the outside."""
+    beside = _triangles_beside(triangles, edges, n_points)
+    out: Ints = np.append(regions.astype(np.int64), OUTSIDE)[np.stack(beside, axis=1)]
+    return out
 
 
 def _chains(edges: Ints, tags: Ints, sides: Ints) -> Iterator[tuple[list[int], int]]:

@@ -23,8 +23,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .domain import Domain
 from .errors import FormatError
+from .raw import Outline
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -76,8 +76,8 @@ class _Lines:
         return FormatError(f"{self.path}, line {self._line}: {message}")
 
 
-def read_poly(path: str | os.PathLike[str]) -> Domain:
-    """Read a domain in Triangle's .poly format.
+def read_poly(path: str | os.PathLike[str]) -> Outline:
+    """Read points and segments in Triangle's .poly format.
 
     Parameters
     ----------
@@ -86,17 +86,15 @@ def read_poly(path: str | os.PathLike[str]) -> Domain:
 
     Returns
     -------
-    Domain
-        Segments with a marker other than 0 bear its decimal form as their name (``"2"``); so do
-        regions with their attribute. Area limits of regions are not used: sizes are the business
-        of the metric.
+    Outline
+        What the file says, unchecked. Segments with a marker other than 0 bear its decimal form as
+        their name (``"2"``); so do regions with their attribute. Area limits of regions are not
+        used: sizes are the business of the metric.
 
     Raises
     ------
     FormatError
         With the line, where the file is truncated or holds something else than it should.
-    DomainError
-        If the file is read but cannot be meshed: crossing segments, a hole outside, ...
     """
     path = Path(path)
     lines = _Lines(path)
@@ -109,7 +107,7 @@ def read_poly(path: str | os.PathLike[str]) -> Domain:
     segments, names = _segments(lines, first, len(points))
     n_holes, _ = lines.count("holes")
     holes = [tuple(lines.next(f"hole {i}", 3)[1:3]) for i in range(n_holes)]
-    return Domain(points, segments, holes=holes, regions=_regions(lines), names=names)
+    return Outline(points, segments, holes, _regions(lines), names)
 
 
 def _points(lines: _Lines, count: int, header: list[float]) -> tuple[Floats, int]:

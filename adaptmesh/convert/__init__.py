@@ -1,4 +1,4 @@
-"""Meshes as objects of other libraries, and back.
+"""Meshes and domains as objects of other libraries, and back.
 
 ==============  ==========================================  ======================================
 scikit-fem      `to_skfem`, `from_skfem`                    ``MeshTri``
@@ -7,6 +7,7 @@ FEniCSx         `to_dolfinx`, `from_dolfinx`                ``Mesh`` and two ``M
 meshio          `to_meshio`, `from_meshio`                  ``Mesh``
 pyvista         `to_pyvista`, `from_pyvista`                ``UnstructuredGrid``
 matplotlib      `to_matplotlib`, `from_matplotlib`          ``tri.Triangulation``
+shapely         `to_shapely`; `adaptmesh.Domain.polygon`    a ``MultiPolygon`` for each region
 ==============  ==========================================  ======================================
 
 Points keep their order, so that values at the points need no map, except in FEniCSx, which numbers
@@ -21,6 +22,7 @@ from .matplotlib import from_matplotlib, to_matplotlib
 from .meshio import from_meshio, to_meshio
 from .netgen import from_netgen, to_netgen
 from .pyvista import from_pyvista, to_pyvista
+from .shapely import to_shapely
 from .skfem import from_skfem, to_skfem
 
 __all__ = [
@@ -35,6 +37,7 @@ __all__ = [
     "to_meshio",
     "to_netgen",
     "to_pyvista",
+    "to_shapely",
     "to_skfem",
     "vertex_values_of_dolfinx",
 ]

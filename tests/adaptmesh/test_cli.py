@@ -109,9 +109,25 @@ def test_generate_with_placement(run, square):
 def test_generate_repairs_on_request_only(run, tmp_path):
     (tmp_path / "bow.geojson").write_text(json.dumps(BOWTIE))
     refused = run("generate", "bow.geojson", "-s", "0.1", "-o", "out.vtu")
-    assert_bad(refused, "self-intersection at (0.5, 0.5)")
-    assert "--make-valid" in refused.stderr
-    assert run("generate", "bow.geojson", "-s", "0.1", "-o", "a.vtu", "--make-valid").exit_code == 0
+    assert_bad(refused, "crossing at (0.5, 0.5)")
+    assert "--repair" in refused.stderr
+    repaired = run("generate", "bow.geojson", "-s", "0.1", "-o", "a.vtu", "--repair")
+    assert repaired.exit_code == 0
+    assert "1 repair" in repaired.stdout
+
+
+def test_repair_writes_what_can_be_read_without_it(run, tmp_path):
+    (tmp_path / "bow.geojson").write_text(json.dumps(BOWTIE))
+    result = run("repair", "bow.geojson", "-o", "clean.geojson")
+    assert result.exit_code == 0, result.output
+    assert "crossing: 1" in result.stdout
+    assert am.read_domain("clean.geojson").area == am.repair("bow.geojson")[0].area
+    assert run("repair", "clean.geojson", "-o", "again.geojson", "-q").output == ""
+
+
+def test_repair_options_that_make_no_sense(run, square):
+    assert run("repair", square, "-o", "out.vtu").exit_code == 2
+    assert run("generate", square, "-s", "1", "-o", "a.vtu", "--tolerance", "1").exit_code == 2
 
 
 def test_generate_from_a_mesh_and_its_metric(run, mesh, tmp_path):

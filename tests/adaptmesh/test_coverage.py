@@ -51,32 +51,48 @@ def test_a_third_coordinate_is_ignored():
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
-def test_a_bowtie_is_refused_by_place_and_repaired_on_request(scale):
+def test_a_bowtie_is_refused_by_place(scale):
     bowtie = shapely.Polygon(scale * np.array([(0, 0), (2, 2), (2, 0), (0, 2)]))
-    with pytest.raises(DomainError, match=r"polygon 0 \('bow'\).*self-intersection at \(.*valid"):
+    with pytest.raises(DomainError, match=r"crossing at \(.*polygon 0 \('bow'\).*adaptmesh.repair"):
         domain_of_polygons([bowtie], ["bow"])
-    repaired = domain_of_polygons([bowtie], ["bow"], make_valid=True)
-    assert repaired.area == pytest.approx(2.0 * scale**2)
-    assert len(repaired.points) == 5
 
 
-def test_overlaps_are_refused_and_go_to_the_first_on_request():
+def test_overlaps_are_refused():
     polygons = [shapely.box(0, 0, 2, 1), shapely.box(1, 0, 3, 1)]
-    with pytest.raises(DomainError, match=r"polygon 0 \('a'\) and polygon 1 .* overlap at \(1\.5,"):
+    with pytest.raises(DomainError, match=r"overlap at \(1.*polygon 0 \('a'\).*polygon 1 \('b'\)"):
         domain_of_polygons(polygons, ["a", "b"])
-    domain = domain_of_polygons(polygons, ["a", "b"], make_valid=True)
-    assert region_area(domain, "a") == 2.0
-    assert region_area(domain, "b") == 1.0
 
 
-def test_borders_that_nearly_coincide_are_refused_and_snapped_on_request():
+def test_borders_that_nearly_coincide_are_refused():
     nearly = np.nextafter(1.0, 2.0)
     polygons = [shapely.box(0, 0, 1, 1), shapely.box(nearly, 0, 2, 1), shapely.box(0, 1, 2, 2)]
-    with pytest.raises(DomainError, match=r"the point \(1, 0\) is nearer than .* but not on it"):
+    with pytest.raises(DomainError, match=r"nearly the same point at \(1, 0\): point \d of"):
         domain_of_polygons(polygons, [None, None, None])
-    domain = domain_of_polygons(polygons, ["a", "b", "c"], make_valid=True)
-    assert domain.area == pytest.approx(4.0)
-    assert len(domain.points) == 8
+
+
+def test_borders_are_named_after_the_regions_beside_them():
+    a, b, c = shapely.box(0, 0, 1, 1), shapely.box(1, 0, 2, 1), shapely.box(2, 0, 3, 1)
+    domain = domain_of_polygons([a, b, c], ["a", "b", None])
+
+    def length(name):
+        mine = domain.segments[domain.segment_tags == domain.names[name]]
+        return np.hypot(*(domain.points[mine[:, 1]] - domain.points[mine[:, 0]]).T).sum()
+
+    assert list(domain.names) == ["a", "b", "a|b"]
+    assert {name: length(name) for name in domain.names} == {"a": 3.0, "a|b": 1.0, "b": 3.0}
+
+
+def test_lines_between_parts_of_one_region_have_no_name():
+    domain = domain_of_polygons([shapely.box(0, 0, 1, 1), shapely.box(1, 0, 2, 1)], ["a", "a"])
+    assert len(domain.segments) == 7
+    assert (domain.segment_tags == 0).sum() == 1
+
+
+def test_two_borders_of_one_name_are_refused():
+    names = ["a", "b", "a|b"]
+    polygons = [shapely.box(i, 0, i + 1, 1) for i in range(3)]
+    with pytest.raises(DomainError, match=r"'a\|b'.*without '\|'"):
+        domain_of_polygons(polygons, names)
 
 
 @pytest.mark.parametrize(
@@ -85,14 +101,13 @@ def test_borders_that_nearly_coincide_are_refused_and_snapped_on_request():
         ([], "no polygons"),
         ([shapely.Polygon()], "polygon 0 is empty"),
         ([shapely.Polygon([(0, 0), (1, 0), (np.inf, 1)])], "point 2 .*not finite"),
+        ([shapely.Polygon([(0, 0), (1, 0), (1e80, 1)])], "point 2 .*another unit"),
+        ([shapely.Polygon([(0, 0), (1e-80, 0), (0, 1e-80)])], "areas underflow"),
+        ([shapely.Polygon([(1, 2), (1, 2), (1, 2)])], r"ring without area at \(1, 2\)"),
+        ([shapely.Polygon([(0, 0), (1, 0), (2, 0)])], r"nothing to mesh: .* at \(0, 0\)"),
+        ([shapely.LineString([(0, 0), (1, 0)])], "polygon 0 is a LineString"),
     ],
 )
 def test_what_is_no_polygon_is_refused(polygons, message):
     with pytest.raises(DomainError, match=message):
-        domain_of_polygons(polygons, [None] * len(polygons), make_valid=True)
-
-
-def test_a_polygon_without_area_cannot_be_repaired():
-    flat = shapely.Polygon([(0, 0), (1, 0), (2, 0)])
-    with pytest.raises(DomainError, match="has no area"):
-        domain_of_polygons([flat], [None], make_valid=True)
+        domain_of_polygons(polygons, [None] * len(polygons))

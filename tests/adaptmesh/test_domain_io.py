@@ -52,11 +52,12 @@ def test_a_feature_may_have_no_properties(geojson):
 def test_iceland_is_refused_by_place_and_repaired_on_request():
     with pytest.raises(
         DomainError,
-        match=r"iceland\.geojson: polygon 0 \('Iceland'\) is not valid: "
-        r"self-intersection at \(123\.1\d*, -119\.6\d*\).*make_valid=True",
+        match=r"iceland\.geojson: crossing at \(123\.1\d*, -119\.6\d*\): segment \d+ of part 0 of "
+        r"polygon 0 \('Iceland'\) and .* cross.*adaptmesh\.repair",
     ):
         am.read_domain(ICELAND)
-    domain = am.read_domain(ICELAND, make_valid=True)
+    domain, repairs = am.repair(ICELAND)
+    assert repairs.counts == {"crossing": 1}
     assert domain.area == pytest.approx(101716.802, abs=1e-2)
     assert list(domain.region_names) == ["Iceland"]
 
@@ -73,8 +74,13 @@ def test_iceland_is_refused_by_place_and_repaired_on_request():
             r"polygon 1 \('x'\) is a LineString.*remove that feature",
         ),
         (feature(None), "polygon 0 is nothing"),
+        ({"type": "Polygon", "coordinates": [[[0, 0], [1, 0]]]}, r"without area at \(0, 0\)"),
+        (
+            {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [0, 1]]]},
+            r"ring not closed at \(0, 1\)",
+        ),
         ({"type": "Polygon", "coordinates": []}, "polygon 0 is empty"),
-        (collection(feature(SQUARE), feature(SQUARE)), "polygon 0 and polygon 1 overlap"),
+        (collection(feature(SQUARE), feature(SQUARE)), "polygon 0, .*, and polygon 1 overlap"),
     ],
 )
 def test_what_is_no_polygon_is_a_domain_error(geojson, content, message):
@@ -90,7 +96,7 @@ def test_what_is_no_polygon_is_a_domain_error(geojson, content, message):
         ("[1, 2]", "not GeoJSON"),
         ('{"type": "FeatureCollection"}', "no list of 'features'"),
         ('{"type": "FeatureCollection", "features": [7]}', "feature 0 is not an object"),
-        ('{"type": "Polygon", "coordinates": [[[0, 0], [1, 0]]]}', "polygon 0 cannot be read"),
+        ('{"type": "Polygon", "coordinates": [[[0], [1]]]}', "polygon 0 cannot be read"),
         ('{"type": "Polygon", "coordinates": "none"}', "polygon 0 cannot be read"),
     ],
 )

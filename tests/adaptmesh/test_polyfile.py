@@ -43,7 +43,7 @@ def poly(tmp_path):
 
 
 def test_holes_markers_and_regions(poly):
-    domain = read_poly(poly(FRAME))
+    domain = read_poly(poly(FRAME)).domain()
     assert domain.area == 8.0
     assert list(domain.names) == ["2", "3", "7"]
     assert (domain.segment_tags == domain.names["7"]).sum() == 4
@@ -53,7 +53,7 @@ def test_holes_markers_and_regions(poly):
 
 def test_numbers_from_zero_points_in_a_node_file_and_no_regions(poly):
     poly("3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n", "in.node")
-    domain = read_poly(poly("0 2 0 0\n3 0\n0 0 1\n1 1 2\n2 2 0\n0\n"))
+    domain = read_poly(poly("0 2 0 0\n3 0\n0 0 1\n1 1 2\n2 2 0\n0\n")).domain()
     assert domain.area == 0.5
     assert not domain.names
     assert not domain.region_names
@@ -89,7 +89,7 @@ def test_nonsense_is_an_error_with_its_line(poly, old, new, message):
 
 def test_a_hole_outside_is_the_domains_error(poly):
     with pytest.raises(DomainError, match="hole 0"):
-        read_poly(poly(FRAME.replace("1  1.5 1.5", "1  9 9")))
+        read_poly(poly(FRAME.replace("1  1.5 1.5", "1  9 9"))).domain()
 
 
 def test_missing_and_binary_files(tmp_path):

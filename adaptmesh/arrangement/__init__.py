@@ -1,0 +1,19 @@
+"""Segments made to meet only at their ends, the faces between them, and what was done for it."""
+
+from .distance import first_of_equal
+from .faces import Faces, find_faces
+from .noding import Noded, Words, node, used_tolerance
+from .record import Repair, Repairs, at
+
+__all__ = [
+    "Faces",
+    "Noded",
+    "Repair",
+    "Repairs",
+    "Words",
+    "at",
+    "find_faces",
+    "first_of_equal",
+    "node",
+    "used_tolerance",
+]

@@ -1,0 +1,33 @@
+"""Points and edges numbered anew."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Ints = NDArray[np.int64]
+
+
+def used_points(pairs: Ints) -> tuple[Ints, Ints]:
+    """The points that pairs are made of, sorted, and the pairs in numbers of these."""
+    is_used = np.bincount(pairs.ravel()) > 0
+    number = np.cumsum(is_used) - 1
+    return np.flatnonzero(is_used), number[pairs]
+
+
+def unique_edges(pieces: Ints) -> tuple[Ints, Ints, Ints]:
+    """The pairs of points that pieces join, each once, lower first.
+
+    Returns
+    -------
+    edges : (e, 2) array
+    edge : (p,) array
+        That of each piece.
+    sign : (p,) array
+        1 where a piece runs along its edge, -1 where against it.
+    """
+    n = int(pieces.max(initial=0)) + 1
+    low, high = pieces.min(axis=1), pieces.max(axis=1)
+    keys, edge = np.unique(low * n + high, return_inverse=True)
+    edges = np.stack([keys // n, keys % n], axis=1)
+    return edges, edge.reshape(-1), np.where(pieces[:, 0] == low, 1, -1)

@@ -1,0 +1,95 @@
+"""What was repaired: each thing done, where, and how far it moved."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import overload
+
+SHOWN = 5
+"""So many repairs of a kind are printed; `Repairs` holds all of them."""
+
+
+@dataclass(frozen=True)
+class Repair:
+    """One thing done to an outline.
+
+    Attributes
+    ----------
+    kind : str
+        What was wrong, in a word or two: ``"crossing"``, ``"nearly the same point"``, ...
+    place : (float, float)
+        Where.
+    what : str
+        What was wrong there and what was done, with the items and the size of the change.
+    displacement : float
+        How far a point was moved for it, or a segment was bent; 0 if nothing moved.
+    """
+
+    kind: str
+    place: tuple[float, float]
+    what: str
+    displacement: float = 0.0
+
+    def __str__(self) -> str:
+        return f"{self.kind} at {at(*self.place)}: {self.what}"
+
+
+@dataclass(frozen=True)
+class Repairs(Sequence[Repair]):
+    """All that was done to an outline; printed as a report, and false if nothing was done.
+
+    Attributes
+    ----------
+    records : tuple of Repair
+        Each thing done, in the order of the work.
+    tolerance : float
+        What was nearer than this was made one.
+    displacement : float
+        The farthest that any point of the clean outline lies from the segment that it was on in
+        the given one. Steps can add up, so that it may exceed the tolerance.
+    """
+
+    records: tuple[Repair, ...]
+    tolerance: float
+    displacement: float = 0.0
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many repairs of each kind there are."""
+        return dict(Counter(record.kind for record in self.records))
+
+    def __len__(self) -> int:
+        return len(self.records)
+
+    def __iter__(self) -> Iterator[Repair]:
+        return iter(self.records)
+
+    @overload
+    def __getitem__(self, index: int) -> Repair: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Repair, ...]: ...
+    def __getitem__(self, index: int | slice) -> Repair | tuple[Repair, ...]:
+        return self.records[index]
+
+    def __str__(self) -> str:
+        if not self.records:
+            return f"nothing to repair (tolerance {self.tolerance:.3g})"
+        n = len(self)
+        lines = [
+            f"{n} repair{'s' if n > 1 else ''} (tolerance {self.tolerance:.3g}, "
+            f"nothing moved farther than {self.displacement:.3g})"
+        ]
+        for kind, count in self.counts.items():
+            lines.append(f"  {kind}: {count}")
+            these = [record for record in self.records if record.kind == kind]
+            lines += [f"    at {at(*record.place)}: {record.what}" for record in these[:SHOWN]]
+            if count > SHOWN:
+                lines.append(f"    ... and {count - SHOWN} more")
+        return "\n".join(lines)
+
+
+def at(x: float, y: float) -> str:
+    """A place as messages give it."""
+    return f"({x:.10g}, {y:.10g})"

@@ -1,0 +1,92 @@
+"""GeoJSON: polygons with names, in and out."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from .convert import to_shapely
+from .domain import Domain
+from .errors import DomainError, FormatError
+from .raw import Shape
+
+GEOJSON_SUFFIXES = (".geojson", ".json")
+
+
+def read_geojson(path: Path) -> list[Shape]:
+    """The polygons of a file, unchecked; a `FormatError` names the file."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise FormatError(f"{path}: no such file") from error
+    except UnicodeDecodeError as error:
+        raise FormatError(f"{path} is not a text file: {error}") from error
+    except json.JSONDecodeError as error:
+        raise FormatError(
+            f"{path} is not valid JSON at line {error.lineno}, column {error.colno} "
+            f"({error.msg}): is the file complete?"
+        ) from error
+    except OSError as error:
+        raise FormatError(f"{path} cannot be read: {error.strerror}") from error
+    if not isinstance(content, dict) or "type" not in content:
+        raise FormatError(f"{path} is JSON but not GeoJSON: its outermost object has no 'type'")
+    try:
+        return shapes_of_geojson(content)
+    except FormatError as error:
+        raise FormatError(f"{path}: {error}") from error
+
+
+def write_geojson(path: str | os.PathLike[str], domain: Domain) -> None:
+    """Write the regions of a domain as features, each with its name.
+
+    Names of edges and lines within regions are not kept: GeoJSON has no place for them. Coordinates
+    are written with all their digits.
+    """
+    import shapely
+
+    from .io.files import replace_files
+
+    features = [
+        {
+            "type": "Feature",
+            "properties": {} if name is None else {"name": name},
+            "geometry": json.loads(shapely.to_geojson(area)),
+        }
+        for name, area in to_shapely(domain).items()
+    ]
+    text = json.dumps({"type": "FeatureCollection", "features": features})
+    replace_files({Path(path): text.encode()})
+
+
+def shapes_of_geojson(content: Mapping[str, Any]) -> list[Shape]:
+    """The polygons of a GeoJSON object: a geometry, a feature, or a collection of features.
+
+    Raises
+    ------
+    FormatError
+        If it is not GeoJSON.
+    DomainError
+        If a feature is something else than a Polygon or MultiPolygon, or there is none.
+    """
+    if content["type"] == "FeatureCollection":
+        features = content.get("features")
+        if not isinstance(features, Sequence):
+            raise FormatError("the FeatureCollection has no list of 'features'")
+    else:
+        features = [content]
+    if not features:
+        raise DomainError("it has no features: there is nothing to mesh")
+    shapes = []
+    for number, feature in enumerate(features):
+        if not isinstance(feature, Mapping):
+            raise FormatError(f"feature {number} is not an object but {feature!r}")
+        geometry: Any = feature
+        name = None
+        if feature.get("type") == "Feature":
+            geometry = feature.get("geometry")
+            name = (feature.get("properties") or {}).get("name")
+        shapes.append(Shape.of_geojson(geometry, number, None if name is None else str(name)))
+    return shapes

@@ -1,0 +1,131 @@
+"""Dirty input made into a clean domain, and a report of what was done."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from .arrangement import Repair, Repairs
+from .coverage import repaired_domain_of_shapes
+from .domain import Domain
+from .geojson import shapes_of_geojson
+from .raw import Outline, Shape
+from .repair_segments import repaired_domain_of_segments
+
+__all__ = ["Repair", "Repairs", "repair"]
+
+
+def repair(dirty: Any, tolerance: float | None = None) -> tuple[Domain, Repairs]:
+    """Make a clean domain of what may be dirty, and say what was done for it.
+
+    Parameters
+    ----------
+    dirty : what to mesh, as it comes
+        ============================  ============================================================
+        an `Outline` or a `Domain`    points, segments, holes, regions and names
+        an (n, 2) array               a ring
+        a sequence of such arrays     the outer ring, then holes and islands, as `Domain.polygon`
+        a polygon of shapely          also a MultiPolygon, or a sequence of polygons
+        a GeoJSON mapping             a geometry, a feature, or a collection of features
+        a mapping of names            to polygons, each of them any of the above: named regions
+        a path                        of a file that `read_domain` can read
+        ============================  ============================================================
+    tolerance : float, optional
+        What is nearer than this is made one, in units of the coordinates. The default is 1e-9 of
+        the extent, about the rounding of text files and of earlier computations; borders that
+        miss each other by more need more. Less than 4 units in the last place of the
+        largest coordinate is taken as that.
+
+    Returns
+    -------
+    domain : Domain
+        Clean: that its segments meet only at their ends is proven by an exact triangulation.
+    repairs : Repairs
+        A record of each thing done; ``print(repairs)`` is a report. Empty, and false, if there
+        was nothing to do: then the domain is what it would have been without repair.
+
+    Raises
+    ------
+    DomainError
+        If what is wrong has no obvious remedy (a boundary that is open by more than the
+        tolerance, a seed in no region, nothing left with an area); it names the place.
+
+    Notes
+    -----
+    Of points that are nearly the same the first given is kept. A point nearly on a segment divides
+    it; whichever was given later is moved. Segments are divided where they cross, and of segments
+    that overlap one is kept, with the name of the first that has one. What nothing asks for stays
+    where it is, bit for bit.
+
+    Polygons take in what their rings go around, in whatever direction and however often, less
+    their holes; a ring in a hole is an island. Where polygons overlap, the first one keeps the
+    overlap. Gaps and overlaps narrower than the tolerance vanish; wider gaps are left, and are
+    holes. Lines that polygons run along there and back (spikes), and rings of which nothing is
+    left, are removed. Segments of an `Outline` are all kept, except those that stick out of the
+    domain and were drawn there and back.
+
+    Examples
+    --------
+    >>> domain, repairs = repair([(0, 0), (2, 2), (2, 0), (0, 2)])
+    >>> domain.area
+    2.0
+    >>> print(repairs)
+    1 repair (tolerance 2e-09, nothing moved farther than 0)
+      crossing: 1
+        at (1, 1): segment 0 of polygon 0 and segment 2 of polygon 0 cross; a point put there
+    """
+    if isinstance(dirty, (str, os.PathLike)):
+        from .domain_io import read_raw
+
+        dirty = read_raw(dirty)
+    if isinstance(dirty, Domain):
+        dirty = Outline.of_domain(dirty)
+    if isinstance(dirty, Outline):
+        return repaired_domain_of_segments(dirty, tolerance)
+    return repaired_domain_of_shapes(_shapes(dirty), tolerance)
+
+
+def _shapes(dirty: Any) -> Sequence[Shape]:
+    """Polygons of whatever was handed in."""
+    if isinstance(dirty, Mapping):
+        if isinstance(dirty.get("type"), str):
+            return shapes_of_geojson(dirty)
+        return [_shape(polygon, i, str(name)) for i, (name, polygon) in enumerate(dirty.items())]
+    if _is_polygon(dirty) or _is_array(dirty) or _is_array(dirty[0] if len(dirty) else None):
+        return [_shape(dirty, 0, None)]
+    if all(isinstance(item, Shape) for item in dirty):
+        return list(dirty)
+    if all(isinstance(item, Mapping) and item.get("type") == "Feature" for item in dirty):
+        return shapes_of_geojson({"type": "FeatureCollection", "features": list(dirty)})
+    return [_shape(polygon, i, None) for i, polygon in enumerate(dirty)]
+
+
+def _shape(polygon: Any, number: int, name: str | None) -> Shape:
+    """One polygon of whatever was handed in."""
+    if hasattr(polygon, "geom_type"):
+        return Shape.of_shapely(polygon, number, name)
+    if hasattr(polygon, "__geo_interface__"):
+        polygon = polygon.__geo_interface__
+    if isinstance(polygon, Mapping):
+        if polygon.get("type") == "Feature":
+            polygon = polygon.get("geometry")
+        return Shape.of_geojson(polygon, number, name)
+    rings = [polygon] if _is_array(polygon) else polygon
+    return Shape.of_rings(rings[0], rings[1:], number, name)
+
+
+def _is_polygon(item: Any) -> bool:
+    return hasattr(item, "geom_type") or hasattr(item, "__geo_interface__")
+
+
+def _is_array(item: Any) -> bool:
+    """Whether it is an (n, 2) array of numbers, or a sequence that can be one."""
+    if item is None or _is_polygon(item) or isinstance(item, (Mapping, Shape)):
+        return False
+    try:
+        return np.asarray(item, dtype=np.float64).ndim == 2
+    except (TypeError, ValueError):
+        return False
