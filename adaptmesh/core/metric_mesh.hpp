@@ -87,12 +87,20 @@ class MetricMesh {
     // 4 sqrt(3) area / (sum of squared sides), measured in the mean metric: 1 for the unit
     // equilateral triangle; not positive for one that is flat or turned over.
     static double quality(const Vertex& a, const Vertex& b, const Vertex& c) {
+        return 1 / inverse_quality(a, b, c);
+    }
+
+    // The determinant is that of a sum that is itself rounded: there is no point in computing it
+    // with the rounding errors of its products.
+    static double inverse_quality(const Vertex& a, const Vertex& b, const Vertex& c) {
         const double ux = b.at.x - a.at.x, uy = b.at.y - a.at.y;
         const double vx = c.at.x - a.at.x, vy = c.at.y - a.at.y;
         const double area2 = ux * vy - uy * vx;
         const Tensor m = a.metric + b.metric + c.metric;
         const double sides = m.q(ux, uy) + m.q(vx, vy) + m.q(vx - ux, vy - uy);
-        return 2 * std::sqrt(3.0) * area2 * metrics::sqrt_det(m) / sides;
+        const double diagonal = m.a * m.c;
+        const double det = std::max(diagonal - m.b * m.b, metrics::DET_RESOLUTION * diagonal);
+        return sides / (2 * std::sqrt(3.0) * area2 * std::sqrt(det));
     }
 
     // Drops dead triangles and the vertices that are left without any; returns the new number of
@@ -128,14 +136,27 @@ class MetricMesh {
     bool is_positive(Index a, Index b, Index c) const { return orient2d(at(a), at(b), at(c)) > 0; }
 
     // Whether point d lies inside the circle through the counter-clockwise a, b, c in the constant
-    // metric m. With m = L L' and u = L' (coordinates relative to d), the sign of the usual
+    // metric m. With the angles over the chord bc at a and d it does if cot A + cot D < 0; in
+    // products with m and areas,
     //
-    //     | xa ya xa^2+ya^2 |
-    //     | xb yb xb^2+yb^2 |      a sum of squares loses far less to cancellation under slanted
-    //     | xc yc xc^2+yc^2 |      anisotropy than the quadratic form of m does.
+    //           c
+    //          /|\         u = b - a, v = c - a,  s = c - d, t = b - d
+    //         a | d
+    //          \|/         (u' m v) (s x t) + (s' m t) (u x v) < 0
+    //           b
     //
-    // `margin`, relative to the size of the terms, keeps ties apart.
+    // `margin`, relative to the size of the terms, keeps ties apart. What is nearer to a tie, or
+    // blurred by cancellation under slanted anisotropy, is decided in the frame of m.
     static bool in_circle(const Tensor& m, Point a, Point b, Point c, Point d, double margin) {
+        const double ux = b.x - a.x, uy = b.y - a.y, vx = c.x - a.x, vy = c.y - a.y;
+        const double sx = c.x - d.x, sy = c.y - d.y, tx = b.x - d.x, ty = b.y - d.y;
+        const double at_a = ux * vy - uy * vx, at_d = sx * ty - sy * tx;
+        const double uv_x = m.a * (ux * vx), uv_y = m.c * (uy * vy), uv = m.b * (ux * vy + uy * vx);
+        const double st_x = m.a * (sx * tx), st_y = m.c * (sy * ty), st = m.b * (sx * ty + sy * tx);
+        const double sum = at_d * (uv_x + uv_y + uv) + at_a * (st_x + st_y + st);
+        const double size = std::abs(at_d) * (std::abs(uv_x) + std::abs(uv_y) + std::abs(uv)) +
+                            std::abs(at_a) * (std::abs(st_x) + std::abs(st_y) + std::abs(st));
+        if (std::abs(sum) > margin * size) return sum < 0;
         return in_circle(Frame(m), a, b, c, d, margin);
     }
 
@@ -147,6 +168,11 @@ class MetricMesh {
             : l11(std::sqrt(m.a)), l21(m.b / l11), l22(root / l11) {}
     };
 
+    // With m = L L' and u = L' (coordinates relative to d), the sign of the usual
+    //
+    //     | xa ya xa^2+ya^2 |
+    //     | xb yb xb^2+yb^2 |      a sum of squares loses far less to cancellation under slanted
+    //     | xc yc xc^2+yc^2 |      anisotropy than the products of m do.
     static bool in_circle(const Frame& f, Point a, Point b, Point c, Point d, double margin) {
         const auto image = [&](Point p) {
             const double dx = p.x - d.x, dy = p.y - d.y;

@@ -27,8 +27,8 @@ struct BallCost {
     }
     // Grows but slowly where it is hopeless: beside a jump of the metric no triangle is good, and
     // the edges must not suffer for it.
-    static double triangle(double quality) {
-        const double u = 1 / quality - 1;
+    static double triangle(double inverse_quality) {
+        const double u = inverse_quality - 1;
         return QUALITY_WEIGHT *
                (u < HOPELESS ? u * u : HOPELESS * HOPELESS * (1 + 2 * std::log(u / HOPELESS)));
     }
@@ -105,8 +105,8 @@ class Smoother {
         double cost = 0;
         for (std::size_t i = 0; i + 1 < sides_.size(); ++i) {
             const Vertex &a = mesh_.vertices[sides_[i]], &b = mesh_.vertices[sides_[i + 1]];
-            const double q = MetricMesh::quality(p, a, b);
-            if (q <= FLATTEST) return INFINITY;
+            const double q = MetricMesh::inverse_quality(p, a, b);
+            if (!(q > 0 && q < 1 / FLATTEST)) return INFINITY;
             cost +=
                 BallCost::triangle(q) + BallCost::edge(corrections_[i] * MetricMesh::length(p, a));
         }

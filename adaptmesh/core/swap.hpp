@@ -105,6 +105,13 @@ inline Index put_on_edge(MetricMesh& mesh, Place edge, const Vertex& vertex,
     return v;
 }
 
+// Whether the triangle across an edge of t is yet to be looked at in this pass, and the edge then.
+inline bool comes_later(const Triangulation& topology, Index t, int slot) {
+    const Index across = topology.triangles[t].n[slot];
+    if (is_locked(across) || triangle_of(across) < t) return false;
+    return topology.triangles[triangle_of(across)].fresh & TO_SWAP;
+}
+
 // Flips the edges of changed triangles, and of those that the flips change, until (nearly) nothing
 // changes; returns how many flips were made.
 template <typename Criterion, typename Poll>
@@ -120,6 +127,7 @@ Index swap_changed(MetricMesh& mesh, const Criterion& criterion, int most_passes
             T.fresh &= ~TO_SWAP;
             // The slots of t mean other edges after a flip, which marks it for the next pass.
             for (int slot = 0; slot < 3; ++slot) {
+                if (comes_later(mesh.topology, t, slot)) continue;
                 if (try_flip(mesh, {t, slot}, criterion)) {
                     ++flips;
                     break;

@@ -206,17 +206,15 @@ inline Tensor geometric_mean(Tensor s, Tensor t) {
 
 // Metric length of the edge (dx, dy) from a point with metric s to one with metric t: Simpson's
 // rule with the geometric mean of the two as the metric half way. root_s, root_t are sqrt_det(s),
-// sqrt_det(t), which a caller may keep. The determinant of s / root_s + t / root_t is
-// 2 + (mixed discriminant) / (root_s root_t), and that quotient is at least 2.
+// sqrt_det(t), which a caller may keep. With r = root_s root_t the determinant of
+// s / root_s + t / root_t is 2 + (mixed discriminant) / r, where the quotient is at least 2; the
+// mean is (root_t s + root_s t) / sqrt(2 r + mixed discriminant).
 inline double length(Tensor s, double root_s, Tensor t, double root_t, double dx, double dy) {
-    const double q_s = s.q(dx, dy), q_t = t.q(dx, dy);
-    const double roots = root_s * root_t;
+    const double q_s = std::max(s.q(dx, dy), 0.0), q_t = std::max(t.q(dx, dy), 0.0);
+    const double twice = 2 * (root_s * root_t);
     const double mixed = s.a * t.c + s.c * t.a - 2 * s.b * t.b;
-    const double det_sum = 2 + std::max(2.0, mixed / roots);
-    const double q_mid = std::sqrt(roots / det_sum) * (q_s / root_s + q_t / root_t);
-    return (std::sqrt(std::max(q_s, 0.0)) + 4 * std::sqrt(std::max(q_mid, 0.0)) +
-            std::sqrt(std::max(q_t, 0.0))) /
-           6;
+    const double q_mid = (root_t * q_s + root_s * q_t) / std::sqrt(twice + std::max(twice, mixed));
+    return (std::sqrt(q_s) + 4 * std::sqrt(q_mid) + std::sqrt(q_t)) * (1.0 / 6);
 }
 
 inline double length(Tensor s, Tensor t, double dx, double dy) {
