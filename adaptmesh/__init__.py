@@ -17,17 +17,23 @@ from .errors import (
     BudgetError,
     DomainError,
     FormatError,
+    LoopError,
+    LoopInterrupted,
     MetricError,
     TransferError,
 )
 from .generate import generate, predict
+from .history import History, Iteration
 from .io import read, read_fields, read_sol, write, write_sol
+from .loop import adapt_loop
 from .mesh import Mesh
 from .overlay import Overlay
 from .plot import plot
 from .raw import Outline
 from .repair import Repair, Repairs, repair
 from .report import Report, measure
+from .solved import Solution
+from .stopping import Budget
 from .transfer import transfer
 from .triangulate import delaunay
 from .validate import Validity, validate
@@ -36,10 +42,15 @@ __version__ = "0.1.0"
 
 __all__ = [
     "AdaptmeshError",
+    "Budget",
     "BudgetError",
     "Domain",
     "DomainError",
     "FormatError",
+    "History",
+    "Iteration",
+    "LoopError",
+    "LoopInterrupted",
     "Mesh",
     "MetricError",
     "Outline",
@@ -47,9 +58,11 @@ __all__ = [
     "Repair",
     "Repairs",
     "Report",
+    "Solution",
     "TransferError",
     "Validity",
     "adapt",
+    "adapt_loop",
     "curves",
     "delaunay",
     "generate",

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from metrics.errors import AdaptmeshError, MetricError
+
+if TYPE_CHECKING:
+    from .history import History
 
 __all__ = [
     "AdaptmeshError",
     "BudgetError",
     "DomainError",
     "FormatError",
+    "LoopError",
+    "LoopInterrupted",
     "MetricError",
     "TransferError",
 ]
@@ -28,3 +35,30 @@ class FormatError(AdaptmeshError, OSError):
 
 class TransferError(AdaptmeshError, ValueError):
     """A field that cannot be carried to another mesh: wrong length, not finite, or too far away."""
+
+
+class LoopError(AdaptmeshError):
+    """A loop that was stopped by an exception, which is its ``__cause__``.
+
+    Attributes
+    ----------
+    history : History
+        All iterations that were completed before.
+    iteration : int
+        The one that was not.
+    stage : str
+        Where in it: ``"adapt"``, ``"transfer"``, ``"solve"``, ``"metric"``, ``"save"``,
+        ``"callback"`` or ``"stopping rule"``.
+    """
+
+    def __init__(self, history: History, iteration: int, stage: str, error: Exception) -> None:
+        self.history, self.iteration, self.stage = history, iteration, stage
+        super().__init__(f"iteration {iteration}, {stage}: {type(error).__name__}: {error}")
+
+
+class LoopInterrupted(KeyboardInterrupt):
+    """Ctrl-C in a loop; `history`, `iteration` and `stage` are as those of `LoopError`."""
+
+    def __init__(self, history: History, iteration: int, stage: str) -> None:
+        self.history, self.iteration, self.stage = history, iteration, stage
+        super().__init__(f"iteration {iteration}, {stage}: interrupted")

@@ -3,6 +3,7 @@
 from . import tensor
 from .background import Background
 from .control import ControlSpace, Metric, Uniform, as_control_space
+from .curvature import Curvature, interpolation_errors
 from .errors import AdaptmeshError, MetricError
 from .estimators import (
     doerfler_marking,
@@ -45,7 +46,7 @@ from .sizes import (
     Shock,
     first_height,
 )
-from .solution import metric_from_solution
+from .solution import metric_from_hessians, metric_from_solution
 
 __all__ = [
     "AdaptmeshError",
@@ -54,6 +55,7 @@ __all__ = [
     "BoundaryLayer",
     "Complexity",
     "ControlSpace",
+    "Curvature",
     "Distance",
     "Expression",
     "Geometry",
@@ -79,11 +81,13 @@ __all__ = [
     "hessians",
     "implied_metric",
     "interpolation_error",
+    "interpolation_errors",
     "lp_metric",
     "mesh_edges",
     "metric_areas",
     "metric_from_adjoint",
     "metric_from_indicators",
+    "metric_from_hessians",
     "metric_from_solution",
     "nodal_areas",
     "nodal_complexity",

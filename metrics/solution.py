@@ -1,15 +1,17 @@
-"""From a solution to a metric, in one call."""
+"""From a solution, or its Hessians, to a metric in one call."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import tensor
-from .arrays import Floats, Ints, as_numbers, as_points, as_triangles
+from .arrays import Floats, as_numbers, as_points, as_triangles
 from .background import Background
+from .curvature import Curvature
 from .errors import MetricError
-from .measure import mesh_edges
 from .nodal import nodal_complexity
 from .normalise import (
     Goal,
@@ -21,12 +23,8 @@ from .normalise import (
     lp_metric,
     scaled_to,
 )
-from .recovery import absolute, hessians
 
-__all__ = ["metric_from_solution"]
-
-_FLATNESS = 1e-8  # curvature below this share of the largest is not told from none
-_ROUNDING = 32 * 2.0**-52  # what rounding of the values does to second differences
+__all__ = ["metric_from_hessians", "metric_from_solution"]
 
 
 def metric_from_solution(
@@ -48,11 +46,8 @@ def metric_from_solution(
 ) -> Background:
     """The metric of least error of linear interpolation, for what there is to spend.
 
-    In this order, always: the Hessian of each field at the vertices (`metrics.hessians`); its
-    absolute value, with the ratio of its sizes bounded by `max_anisotropy`; its L^p metric
-    (`metrics.lp_metric`); fields combined in the order given, after each is scaled to the same
-    complexity, or to its own error; then one factor for all, so that after the limits, the
-    gradation, and the limits again there is as much as was asked for.
+    The absolute Hessian of each field at the vertices, by `metrics.Curvature`, and then
+    `metrics.metric_from_hessians`.
 
     Parameters
     ----------
@@ -89,12 +84,6 @@ def metric_from_solution(
         If not exactly one target is given or the limits make it impossible; for a field that is
         constant; and as for `metrics.hessians`.
 
-    Notes
-    -----
-    Eigenvalues of Hessians are raised to 1e-8 of the largest one, and to what rounding of the
-    values can make of a function without curvature: a linear function gives back the sizes of the
-    mesh it is on.
-
     References
     ----------
     Loseille, Alauzet: Continuous mesh framework parts I and II. SIAM Journal on Numerical Analysis
@@ -104,41 +93,96 @@ def metric_from_solution(
     where = as_points(points)
     t = as_triangles(triangles, len(where))
     fields = _as_fields(values, len(where))
+    if error is not None and not (target_vertices is None and complexity is None):
+        raise MetricError("give one target: target_vertices, complexity or error")
+    return metric_from_hessians(
+        where,
+        t,
+        [Curvature.of(where, t, u, recovery).absolute for u in fields],
+        target_vertices=target_vertices,
+        complexity=complexity,
+        error=error,
+        p=p,
+        limits=Limits(h_min, h_max, max_anisotropy, gradation, law),
+        combine=combine,
+    )
+
+
+def metric_from_hessians(
+    points: ArrayLike,
+    triangles: ArrayLike,
+    hessians: Sequence[ArrayLike],
+    *,
+    target_vertices: float | None = None,
+    complexity: float | None = None,
+    error: ArrayLike | None = None,
+    p: float = 2,
+    limits: Limits | None = None,
+    combine: str = "intersection",
+) -> Background:
+    """The metric of least error of linear interpolation, from absolute Hessians at the vertices.
+
+    In this order, always: the ratio of the sizes of each is bounded by `Limits.max_anisotropy`; its
+    L^p metric (`metrics.lp_metric`); fields combined in the order given, after each is scaled to
+    the same complexity, or to its own error; then one factor for all, so that after the limits, the
+    gradation, and the limits again there is as much as was asked for.
+
+    Parameters
+    ----------
+    points : (n, 2) array_like
+    triangles : (m, 3) array_like of int
+    hessians : sequence of (n, 3) or (n, 2, 2) array_like
+        Positive definite, one for each field: see `metrics.Curvature.absolute`.
+    target_vertices, complexity, error, p, combine : optional
+        As for `metrics.metric_from_solution`. With an error as well as a number of vertices or a
+        complexity, the errors say what a field counts for, and the other how fine the mesh is.
+    limits : Limits, optional
+        By default growth is bounded, and nothing else.
+
+    Returns
+    -------
+    Background
+        The metric, carried by the mesh given.
+
+    Raises
+    ------
+    MetricError
+        If no target is given or the limits make it impossible; and if a Hessian is not positive
+        definite.
+    """
+    check_norm(p)
+    where = as_points(points)
+    t = as_triangles(triangles, len(where))
+    limits = limits or Limits()
+    if not len(hessians):
+        raise MetricError("no Hessians: at least one field must ask for sizes")
     curvatures = [
-        tensor.limit(_curvature(where, t, u, recovery), max_anisotropy=max_anisotropy)
-        for u in fields
+        tensor.limit(
+            tensor.pack(h, points=where, what="the absolute Hessian"),
+            max_anisotropy=limits.max_anisotropy,
+        )
+        for h in hessians
     ]
-    limits = Limits(h_min, h_max, max_anisotropy, gradation, law)
     shapes = [lp_metric(h, p) for h in curvatures]
     if error is None:
         goal = count_goal(where, t, target_vertices, complexity)
         amounts = [1 / nodal_complexity(where, t, m) for m in shapes]
     else:
-        if target_vertices is not None or complexity is not None:
-            raise MetricError("give one target: target_vertices, complexity or error")
-        wanted = _as_errors(error, len(fields))
+        wanted = _as_errors(error, len(curvatures))
 
         def shares(metrics: list[Floats]) -> list[float]:
             pairs = zip(metrics, curvatures, wanted, strict=True)
             return [interpolation_error(where, t, m, h, p) / e for m, h, e in pairs]
 
-        goal = Goal(lambda m: max(shares([m] * len(fields))), 1.0, "share of the error", False)
         amounts = shares(shapes)
+        if target_vertices is not None or complexity is not None:
+            goal = count_goal(where, t, target_vertices, complexity)
+        else:
+            goal = Goal(
+                lambda m: max(shares([m] * len(curvatures))), 1.0, "share of the error", False
+            )
     together = combined([k * m for k, m in zip(amounts, shapes, strict=True)], combine)
     return Background(where, t, scaled_to(goal, together, where, t, limits))
-
-
-def _curvature(points: Floats, triangles: Ints, values: Floats, recovery: str) -> Floats:
-    """The absolute Hessian (n, 3), not below what can be told from rounding."""
-    second = hessians(points, triangles, values, recovery)
-    largest = np.abs(tensor.unpack(second)).max()
-    edges, _ = mesh_edges(triangles)
-    vectors = points[edges[:, 1]] - points[edges[:, 0]]
-    squares = (vectors**2).sum(axis=1)
-    around = np.full(len(points), np.inf)
-    np.minimum.at(around, edges.ravel(), np.repeat(squares, 2))
-    noise = _ROUNDING * np.abs(values).max() / around
-    return absolute(second, np.maximum(noise, _FLATNESS * largest))
 
 
 def _as_fields(values: ArrayLike, count: int) -> list[Floats]:

@@ -95,6 +95,7 @@ class QuadraticFit {
         }
         double determined = 1;
         for (std::size_t j = 0; j < COEFFICIENTS; ++j) {
+            if (length[j] == 0) return 0;  // as s t for points on the axes only
             determined = std::min(determined, reflect(j, m) / std::sqrt(length[j]));
         }
         if (!(determined > BARELY)) return 0;

@@ -239,3 +239,12 @@ def test_absolute_refuses():
             absolute(wrong)
     with pytest.raises(MetricError, match="negative"):
         absolute([[1.0, 0, 1]], -1)
+
+
+def test_neighbours_on_the_two_axes_only_are_not_enough():
+    """A corner whose two and three rings lie on the sides: x y is 0 at all of them."""
+    points = [(0, 0), (1, 0), (0, 1), (2, 0), (0, 2), (3, 0), (0, 3), (3.5, 3), (3, 3.5)]
+    triangles = [(0, 1, 2), (1, 3, 2), (3, 4, 2), (3, 5, 4), (5, 6, 4), (5, 7, 6), (7, 8, 6)]
+    x, y = np.transpose(points)
+    second = hessians(points, triangles, x * x + 3 * x * y - y * y)
+    np.testing.assert_allclose(second, np.tile([2.0, 3.0, -2.0], (9, 1)), atol=1e-9)

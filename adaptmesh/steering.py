@@ -1,0 +1,182 @@
+"""From what was solved to the metric for the next mesh: how many vertices, and where."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metrics import Curvature, Limits, metric_from_hessians, normalised
+from metrics.normalise import check_norm
+
+from .errors import MetricError
+from .mesh import Mesh
+from .solved import Array, Solved, space_of
+
+Floats = NDArray[np.float64]
+
+# Meshes come within a few per cent of the number of vertices predicted, and a budget is not
+# exceeded: this much of it is asked for.
+SHARE_OF_BUDGET = 0.95
+
+
+@dataclass(frozen=True)
+class Steering:
+    """What the meshes are made for.
+
+    Attributes
+    ----------
+    target_vertices : float or None
+    error : float, mapping of str to float, or None
+        Asked for, of every field, or by its name.
+    p : float
+        Of the norm of the interpolation error.
+    fields : sequence of str or None
+        Those that steer the mesh; None for all real ones that are given at the vertices.
+    limits : Limits
+    recovery, combine : str
+        As for `metrics.metric_from_solution`.
+    growth : float
+        Bound on the ratio of the numbers of vertices of a mesh and the next.
+    order : float
+        The error falls with the number of vertices to this power.
+    max_vertices : int
+    """
+
+    target_vertices: float | None = None
+    error: float | Mapping[str, float] | None = None
+    p: float = 2.0
+    fields: Sequence[str] | None = None
+    limits: Limits = field(default_factory=Limits)
+    recovery: str = "least squares"
+    combine: str = "intersection"
+    growth: float = 4.0
+    order: float = 1.0
+    max_vertices: int = 5_000_000
+
+    def __post_init__(self) -> None:
+        check_norm(self.p)
+        if self.target_vertices is not None and self.error is not None:
+            raise ValueError("give one target: target_vertices or error")
+        if self.target_vertices is not None and not self.target_vertices >= 3:
+            raise ValueError(f"target_vertices={self.target_vertices!r}: at least 3 are needed")
+        if self.target_vertices is not None and self.target_vertices > self.max_vertices:
+            raise ValueError(
+                f"target_vertices={self.target_vertices!r} is more than the budget of "
+                f"{self.max_vertices}"
+            )
+        errors = self.error.values() if isinstance(self.error, Mapping) else [self.error]
+        if self.error is not None and not all(0 < e < np.inf for e in errors if e is not None):
+            raise ValueError(f"error={self.error!r}: must be positive")
+        if isinstance(self.fields, str):
+            raise TypeError(f"fields={self.fields!r}: give a list of names, [{self.fields!r}]")
+        if not self.growth > 1:
+            raise ValueError(f"growth={self.growth!r}: must be more than 1")
+        if not self.order > 0:
+            raise ValueError(f"order={self.order!r}: must be positive")
+
+    def metric(self, mesh: Mesh, solved: Solved) -> tuple[Floats, dict[str, float]]:
+        """The metric (n, 3) at the vertices for the next mesh, and the errors on this one."""
+        if solved.metric is None:
+            return self._recovered(mesh, solved)
+        count = self._count(len(mesh.points), solved.errors)
+        metric = solved.metric
+        if count is None:
+            metric = self.limits.applied(metric, mesh.points, mesh.triangles)
+        else:
+            metric = normalised(
+                metric, mesh.points, mesh.triangles, target_vertices=count, limits=self.limits
+            )
+        return metric, dict(solved.errors)
+
+    def excess(self, errors: Mapping[str, float]) -> float:
+        """The largest ratio of an error to what was asked for."""
+        assert self.error is not None
+        if not errors:
+            raise MetricError(
+                "an error was asked for, but solve gave a metric and no estimate of its own: "
+                "return adaptmesh.Solution(metric=..., errors=...), or give target_vertices"
+            )
+        return max(value / self._wanted(name) for name, value in errors.items())
+
+    def _recovered(self, mesh: Mesh, solved: Solved) -> tuple[Floats, dict[str, float]]:
+        points, triangles = mesh.points, mesh.triangles
+        curvatures = {
+            name: Curvature.of(points, triangles, values, self.recovery)
+            for name, values in self._steering_fields(mesh, solved).items()
+        }
+        errors = dict(solved.errors) or {
+            name: norm(c.interpolation_errors(self.p), self.p) for name, c in curvatures.items()
+        }
+        shares = None
+        if self.error is not None and not solved.errors:
+            shares = [self._wanted(name) for name in curvatures]
+        count = self._count(len(points), errors)
+        if count is None:
+            raise MetricError(
+                "neither target_vertices nor error is given, and solve returned no metric: "
+                "there is nothing that says how fine the mesh is to be"
+            )
+        background = metric_from_hessians(
+            points,
+            triangles,
+            [c.absolute for c in curvatures.values()],
+            target_vertices=count,
+            error=shares,
+            p=self.p,
+            limits=self.limits,
+            combine=self.combine,
+        )
+        return background.tensors, errors
+
+    def _steering_fields(self, mesh: Mesh, solved: Solved) -> dict[str, Array]:
+        """Real fields at the vertices that are not the same everywhere, (n,) or (n, k)."""
+        names = solved.fields if self.fields is None else self.fields
+        chosen = {}
+        for name in names:
+            if name not in solved.fields:
+                known = ", ".join(map(repr, solved.fields)) or "none"
+                raise MetricError(f"there is no field {name!r} to steer by; solve gave {known}")
+            values = solved.fields[name]
+            if values.dtype.kind == "c" or space_of(values, mesh) != "P1":
+                if self.fields is not None:
+                    raise MetricError(
+                        f"field {name!r} cannot steer: real values at the vertices are needed"
+                    )
+            elif np.ptp(values.reshape(len(values), -1), axis=0).any():
+                chosen[name] = values.reshape(len(values), -1)
+        if not chosen:
+            raise MetricError(
+                "no field asks for any size: real values at the vertices, "
+                f"not the same everywhere, are needed; solve gave {', '.join(solved.fields)}"
+            )
+        return chosen
+
+    def _count(self, n_points: int, errors: Mapping[str, float]) -> float | None:
+        """How many vertices the next mesh is to have; None if only a metric can say."""
+        if self.error is not None:
+            wanted = n_points * float(self.excess(errors) ** (1 / self.order))
+            wanted = min(wanted, SHARE_OF_BUDGET * self.max_vertices)
+        elif self.target_vertices is not None:
+            wanted = self.target_vertices
+        else:
+            return None
+        return max(3.0, min(max(wanted, n_points / self.growth), n_points * self.growth))
+
+    def _wanted(self, name: str) -> float:
+        if not isinstance(self.error, Mapping):
+            assert self.error is not None
+            return float(self.error)
+        if name not in self.error:
+            raise MetricError(f"error gives nothing for {name!r}: give a value, or name `fields`")
+        return float(self.error[name])
+
+
+def norm(errors: Floats, p: float) -> float:
+    """The L^p norm on the mesh from those on its triangles."""
+    largest = float(errors.max())
+    if p == np.inf or largest == 0:
+        return largest
+    return largest * float(np.sum((errors / largest) ** p) ** (1 / p))

@@ -1,0 +1,95 @@
+"""When a loop has done enough, or has to end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .history import History
+from .steering import Steering
+
+AGREE = 3  # so many iterations in a row that agree are the end
+
+
+@dataclass(frozen=True)
+class Budget:
+    """What a loop may use; it ends in peace when it is used up.
+
+    Parameters
+    ----------
+    vertices : int
+        The largest mesh.
+    seconds : float
+        Of wall-clock time, from the call; no iteration is begun after.
+    """
+
+    vertices: int = 5_000_000
+    seconds: float = np.inf
+
+    def __post_init__(self) -> None:
+        if not self.vertices >= 3:
+            raise ValueError(f"a budget of {self.vertices!r} vertices: at least 3 are needed")
+        if not self.seconds >= 0:
+            raise ValueError(f"a budget of {self.seconds!r} seconds: must not be negative")
+
+
+@dataclass(frozen=True)
+class StoppingRule:
+    """Convergence, and what ends a loop that does not converge.
+
+    Attributes
+    ----------
+    tolerance : float
+        The last three meshes agree if their numbers of vertices, and the estimates of each error,
+        differ by no more than this share.
+    max_iterations : int
+        How often the mesh is adapted.
+    budget : Budget
+    """
+
+    tolerance: float = 0.02
+    max_iterations: int = 20
+    budget: Budget = field(default_factory=Budget)
+
+    def __post_init__(self) -> None:
+        if not self.tolerance >= 0:
+            raise ValueError(f"tolerance={self.tolerance!r}: must not be negative")
+        if not self.max_iterations >= 0:
+            raise ValueError(f"max_iterations={self.max_iterations!r}: must not be negative")
+
+    def ended(self, history: History, steering: Steering, elapsed: float) -> History | None:
+        """The history with its end, or None if there is to be another iteration."""
+        if not history:
+            return None
+        if self.agree(history):
+            short = steering.error is not None and (
+                steering.excess(history[-1].errors) > 1 + self.tolerance
+            )
+            if not short:
+                return history.ended(
+                    f"the last {AGREE} meshes agree within {100 * self.tolerance:g} %", True
+                )
+            if history[-1].n_points >= 0.9 * self.budget.vertices:
+                return history.ended(
+                    f"the budget of {self.budget.vertices:,} vertices is used up", False
+                )
+        if len(history) > self.max_iterations:
+            return history.ended(f"the mesh was adapted {self.max_iterations} times", False)
+        if elapsed >= self.budget.seconds:
+            return history.ended(f"the budget of {self.budget.seconds:g} s is used up", False)
+        return None
+
+    def agree(self, history: History) -> bool:
+        """Whether counts and errors of the last meshes are all but the same."""
+        last = history[-AGREE:]
+        if len(last) < AGREE or any(it.errors.keys() != last[0].errors.keys() for it in last):
+            return False
+        rows = [[float(it.n_points) for it in last]]
+        rows += [[it.errors[name] for it in last] for name in last[0].errors]
+        return all(self._close(row) for row in rows)
+
+    def _close(self, values: Iterable[float]) -> bool:
+        numbers = list(values)
+        return max(numbers) <= (1 + self.tolerance) * min(numbers)

@@ -1,0 +1,184 @@
+"""How a field bends at the vertices of a mesh, and the interpolation error that makes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import tensor
+from .arrays import Floats, Ints, as_numbers, as_points, as_triangles
+from .errors import MetricError
+from .measure import mesh_edges
+from .normalise import check_norm, combined
+from .recovery import absolute, hessians
+
+__all__ = ["Curvature", "interpolation_errors"]
+
+_FLATNESS = 1e-8  # curvature below this share of the largest is not told from none
+_ROUNDING = 32 * 2.0**-52  # what rounding of the values does to second differences
+
+
+@dataclass(frozen=True, eq=False)
+class Curvature:
+    """The Hessians of a field at the vertices of a mesh.
+
+    Attributes
+    ----------
+    points : (n, 2) array of float
+    triangles : (m, 3) array of int32
+    hessians : list of (n, 3) array of float
+        Of each component of the field.
+    largest : float
+        The largest absolute value of the field.
+    """
+
+    points: Floats
+    triangles: Ints
+    hessians: list[Floats]
+    largest: float
+
+    @classmethod
+    def of(
+        cls,
+        points: ArrayLike,
+        triangles: ArrayLike,
+        values: ArrayLike,
+        recovery: str = "least squares",
+    ) -> Curvature:
+        """Recover the Hessians of a field from its values at the vertices.
+
+        Parameters
+        ----------
+        points : (n, 2) array_like
+        triangles : (m, 3) array_like of int
+        values : (n,) or (n, k) array_like
+            A scalar, or the components of one field, such as a velocity.
+        recovery : {"least squares", "projection", "green"}, optional
+            As `method` of `metrics.hessians`.
+
+        Raises
+        ------
+        MetricError
+            For values of another shape; and as for `metrics.hessians`.
+        """
+        where = as_points(points)
+        t = as_triangles(triangles, len(where))
+        array = np.asarray(as_numbers(values, "values"), np.float64)
+        if array.ndim not in (1, 2) or len(array) != len(where) or array.size == 0:
+            raise MetricError(
+                f"values must have the shape ({len(where)},), or ({len(where)}, k) with k "
+                f"components, not {array.shape}"
+            )
+        components = np.atleast_2d(array.T)
+        return cls(
+            where,
+            t,
+            [hessians(where, t, u, recovery) for u in components],
+            float(np.abs(array).max()),
+        )
+
+    @cached_property
+    def absolute(self) -> Floats:
+        """The absolute Hessian at the vertices, packed (n, 3) and positive definite.
+
+        Of a field with components, the intersection of theirs, so that a small component counts
+        for little. Eigenvalues are raised to 1e-8 of the largest one, and to what rounding of the
+        values can make of a function without curvature: a linear function gives back the sizes of
+        the mesh it is on.
+        """
+        largest = max(float(np.abs(tensor.unpack(h)).max()) for h in self.hessians)
+        noise = _ROUNDING * self.largest / _shortest_squares(self.points, self.triangles)
+        floor = np.maximum(noise, _FLATNESS * largest)
+        return combined([absolute(h, floor) for h in self.hessians])
+
+    def interpolation_errors(self, p: float = 2) -> Floats:
+        """The L^p norm on each triangle, (m,), of the error of linear interpolation on this mesh.
+
+        By `metrics.interpolation_errors`; of a field with components, of the Euclidean norm of
+        theirs, or for p other than 2 what bounds it.
+        """
+        parts = [interpolation_errors(self.points, self.triangles, h, p) for h in self.hessians]
+        return parts[0] if len(parts) == 1 else np.sqrt(np.sum(np.square(parts), axis=0))
+
+
+def interpolation_errors(
+    points: ArrayLike, triangles: ArrayLike, hessians: ArrayLike, p: float = 2
+) -> Floats:
+    """The L^p norm of the error of linear interpolation on each triangle, (m,).
+
+    On a triangle with barycentric coordinates b_i and edges e_ij, the interpolant minus a function
+    with the Hessian H is 1/2 sum over i < j of b_i b_j e_ij' H e_ij, exactly if H is constant. Here
+    H on an edge is the mean of those at its ends. The norm is by 36 Gauss points, exact for even p
+    up to 4; for ``p=inf`` the maximum of the quadratic.
+
+    Parameters
+    ----------
+    points : (n, 2) array_like
+    triangles : (m, 3) array_like of int
+    hessians : (n, 3) array_like
+        With their signs, at the points, see `metrics.hessians`.
+    p : float, optional
+        From 1 to inf. The norm on the mesh is ``np.sum(errors**p) ** (1 / p)``, or the maximum.
+    """
+    check_norm(p)
+    where = as_points(points)
+    t = as_triangles(triangles, len(where))
+    h = np.asarray(as_numbers(hessians, "Hessians"), np.float64)
+    if h.shape != (len(where), 3):
+        raise MetricError(f"Hessians must have the shape ({len(where)}, 3), not {h.shape}")
+    d = [_along(where, h, t[:, j], t[:, k]) for j, k in ((1, 2), (2, 0), (0, 1))]
+    if p == np.inf:
+        return _maxima(*d)
+    corners = where[t]
+    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    areas = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
+    scale = np.maximum(np.max(np.abs(d), axis=0), np.finfo(float).tiny)
+    d = [x / scale for x in d]
+    mean = np.zeros(len(t))
+    for b, weight in zip(*_triangle_rule(), strict=True):
+        error = b[1] * b[2] * d[0] + b[2] * b[0] * d[1] + b[0] * b[1] * d[2]
+        mean += weight * (error * error if p == 2 else np.abs(error) ** p)
+    out: Floats = 0.5 * scale * (areas * mean) ** (1 / p)
+    return out
+
+
+def _along(points: Floats, h: Floats, a: Ints, b: Ints) -> Floats:
+    """e' H e for the edges from a to b."""
+    x, y = (points[b] - points[a]).T
+    m = 0.5 * (h[a] + h[b])
+    out: Floats = m[:, 0] * x * x + 2 * m[:, 1] * x * y + m[:, 2] * y * y
+    return out
+
+
+def _maxima(d0: Floats, d1: Floats, d2: Floats) -> Floats:
+    """The largest absolute value of (b1 b2 d0 + b2 b0 d1 + b0 b1 d2) / 2 on each triangle.
+
+    On an edge it is d / 8, in the middle. Inside it is stationary where b is in proportion to
+    w0 = d0 (d1 + d2 - d0), and so on; the value is then d0 d1 d2 / (2 (w0 + w1 + w2)).
+    """
+    w = np.stack([d0 * (d1 + d2 - d0), d1 * (d2 + d0 - d1), d2 * (d0 + d1 - d2)])
+    total = w.sum(axis=0)
+    inside = (w > 0).all(axis=0) | (w < 0).all(axis=0)
+    middle = np.where(inside, d0 * d1 * d2 / np.where(inside, 2 * total, 1), 0)
+    out: Floats = np.max(np.abs([d0 / 8, d1 / 8, d2 / 8, middle]), axis=0)
+    return out
+
+
+def _triangle_rule() -> tuple[Floats, Floats]:
+    """Barycentric coordinates (36, 3) and weights that sum to 1, of Gauss points in a square."""
+    x, w = np.polynomial.legendre.leggauss(6)
+    s, t = (a.ravel() for a in np.meshgrid(0.5 * (x + 1), 0.5 * (x + 1), indexing="ij"))
+    weights = np.outer(w, w).ravel() / 2 * (1 - s)
+    return np.stack([s, (1 - s) * t, (1 - s) * (1 - t)], axis=1), weights
+
+
+def _shortest_squares(points: Floats, triangles: Ints) -> Floats:
+    """The square of the shortest edge at each vertex, (n,)."""
+    edges, _ = mesh_edges(triangles)
+    vectors = points[edges[:, 1]] - points[edges[:, 0]]
+    out = np.full(len(points), np.inf)
+    np.minimum.at(out, edges.ravel(), np.repeat((vectors**2).sum(axis=1), 2))
+    return out
