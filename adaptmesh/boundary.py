@@ -1,4 +1,4 @@
-"""Cutting the segments of a domain into unit pieces."""
+"""Cutting the segments and curves of a domain into unit pieces."""
 
 from __future__ import annotations
 
@@ -10,11 +10,15 @@ from numpy.typing import NDArray
 from metrics import ControlSpace
 
 from . import _core
+from .chords import Chords, Surroundings, chords_along
+from .curve_cuts import unit_cuts
 from .domain import Domain
 from .errors import BudgetError
+from .spans import spans_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+Index = NDArray[np.integer]
 
 
 # The metric is looked at this closely along segments, in metric length: a layer that meets the
@@ -24,28 +28,66 @@ LONGEST_CHORD = 0.125
 # More chords at once would be a boundary of millions of vertices (and a gigabyte of memory).
 MOST_CHORDS = 8_000_000
 
+# By how much a curve may turn along an edge of a mesh, in degrees: a circle gets at least six.
+TURN = 60.0
+
 
 @dataclass(frozen=True)
-class Cuts:
-    """The points of a domain with their metric, and the unit points between them.
+class Outline:
+    """What is triangulated first, and the cuts that follow.
 
     Attributes
     ----------
-    tensors : (n, 3) array
-        The metric at the points of the domain.
-    ends : (p, 2) array of int32
-        The pieces of the domain, each in the direction in which it is cut.
-    points, point_tensors : (c, 2), (c, 3) arrays
+    points, tensors : (n, 2), (n, 3) arrays
+        The points that are triangulated, and the metric at each.
+    segments : (k, 2) array of int32
+        The constrained edges between them, of the domain or spans of chords of its curves.
+    pieces : (p, 2) array of int32
+        These edges, divided where points lie on them, each in the direction in which it is cut.
+    piece_segments : (p,) array of int32
+        The segment of the domain that each piece lies on; of a span, one of its run.
+    is_span : (p,) array of bool
+        Whether the piece is a span: each of its cuts must be made.
+    cuts, cut_tensors : (c, 2), (c, 3) arrays
         The cuts, and the metric at each.
     piece : (c,) array of int32
         The piece that each cut lies on; those of a piece are in order.
     """
 
-    tensors: Floats
-    ends: Ints
     points: Floats
-    point_tensors: Floats
+    tensors: Floats
+    segments: Ints
+    pieces: Ints
+    piece_segments: Ints
+    is_span: NDArray[np.bool_]
+    cuts: Floats
+    cut_tensors: Floats
     piece: Ints
+
+    def divided(self, spans: NDArray[np.bool_]) -> Outline:
+        """The same, but these spans (p,) are divided at all their cuts."""
+        moved = spans[self.piece]
+        number = len(self.points) + np.cumsum(moved) - 1
+        pieces, owners, new_number = [], [], np.cumsum(~spans) - 1
+        for p in np.flatnonzero(spans):
+            a, b = self.pieces[p]
+            row = np.concatenate([[a], number[self.piece == p], [b]])
+            pieces.append(np.stack([row[:-1], row[1:]], axis=1))
+            owners.append(np.full(len(row) - 1, self.piece_segments[p]))
+        gone = {tuple(sorted(pair)) for pair in self.pieces[spans].tolist()}
+        stays = [tuple(sorted(pair)) not in gone for pair in self.segments.tolist()]
+        chords = np.concatenate(pieces).astype(np.int32)
+        return Outline(
+            np.concatenate([self.points, self.cuts[moved]]),
+            np.concatenate([self.tensors, self.cut_tensors[moved]]),
+            np.concatenate([self.segments[stays], chords]),
+            np.concatenate([self.pieces[~spans], chords]),
+            np.concatenate([self.piece_segments[~spans], *owners]).astype(np.int32),
+            np.concatenate([self.is_span[~spans], np.ones(len(chords), bool)]),
+            self.cuts[~moved],
+            self.cut_tensors[~moved],
+            new_number[self.piece[~moved]].astype(np.int32),
+        )
 
 
 def measure_edges(
@@ -64,33 +106,115 @@ def measure_edges(
     return lengths
 
 
-def cut_segments(domain: Domain, field: ControlSpace, most_points: int) -> Cuts:
-    """Cut every segment of the domain into pieces of (nearly) unit metric length.
+def cut_outline(domain: Domain, field: ControlSpace, most_points: int) -> Outline:
+    """Cut every segment and every curve of the domain into pieces of (nearly) unit metric length.
 
-    A segment, or a part of one between points that lie on it, of length L becomes the n equal
-    pieces for which sqrt((n - 1) n) < L <= sqrt(n (n + 1)): as near to unit as they can be. Each is
-    cut once, from its lower point to its upper, so that both its sides and all meshes of the domain
-    with this metric agree on it.
+    A segment, or a part of one between points that lie on it, or a run of curves, of length L
+    becomes the n equal pieces for which sqrt((n - 1) n) < L <= sqrt(n (n + 1)): as near to unit as
+    they can be. Each is cut once, a segment from its lower point to its upper, so that both its
+    sides and all meshes of the domain with this metric agree on it. Curves get more pieces where
+    they turn by more than `TURN` in one, or where their chords would cross something.
     """
-    tensors = field(domain.points)
-    ends = _canonical(domain)
-    starts, stops = ends[:, 0], ends[:, 1]
+    curved = domain.curved
+    vertices = domain.points[curved.is_vertex]
+    number = (np.cumsum(curved.is_vertex) - 1).astype(np.int32)
+    is_straight = curved.segment_runs < 0
+    tensors = field(vertices)
+
+    kept = is_straight[domain.piece_segments]
+    pieces = _canonical(vertices, number[domain.pieces[kept]])
+    starts, stops = pieces[:, 0], pieces[:, 1]
     sampler = _core.edge_sampler(
-        domain.points[starts], tensors[starts], domain.points[stops], tensors[stops], LONGEST_CHORD
+        vertices[starts], tensors[starts], vertices[stops], tensors[stops], LONGEST_CHORD
     )
     total = measure_edges(sampler, field, most_points).sum()
-    if len(domain.points) + total > most_points:
+    _check_budget(len(vertices) + total, most_points)
+    cuts, piece = sampler.cut()
+    straight = Outline(
+        vertices,
+        tensors,
+        number[domain.segments[is_straight]],
+        pieces,
+        domain.piece_segments[kept],
+        np.zeros(len(pieces), bool),
+        cuts,
+        field(cuts),
+        piece,
+    )
+    if not curved.runs:
+        return straight
+    chords, around = _cut_runs(domain, straight, field, most_points)
+    _check_budget(len(chords.points) + total, most_points)
+    return _with_spans(straight, domain, chords, spans_of(chords, around), field)
+
+
+def _check_budget(n: float, most_points: int) -> None:
+    if n > most_points:
         raise BudgetError(
-            f"the boundary alone would have about {total:.3g} vertices, but max_vertices is "
+            f"the boundary alone would have about {n:.3g} vertices, but max_vertices is "
             f"{most_points:,}: ask for larger sizes, or allow more"
         )
-    points, piece = sampler.cut()
-    return Cuts(tensors, ends, points, field(points), piece)
 
 
-def _canonical(domain: Domain) -> Ints:
-    """The pieces of the domain, each from its lower left to its upper right end."""
-    p, q = domain.points[domain.pieces[:, 0]], domain.points[domain.pieces[:, 1]]
+def _cut_runs(
+    domain: Domain, straight: Outline, field: ControlSpace, most_points: int
+) -> tuple[Chords, Surroundings]:
+    """Chords of the runs, of unit length where they can be, and what else there is."""
+    curved = domain.curved
+    on_run = curved.segment_runs >= 0
+    run, u = curved.segment_runs[on_run], curved.segment_parameters[on_run]
+    d = np.diff(domain.points[domain.segments[on_run]], axis=1)[:, 0]
+    cross = d[:-1, 0] * d[1:, 1] - d[:-1, 1] * d[1:, 0]
+    turn = np.abs(np.arctan2(cross, (d[:-1] * d[1:]).sum(axis=1)))
+    turns = np.bincount(run[1:], turn * (np.diff(run) == 0), minlength=len(curved.runs))
+    least = np.maximum(1, np.ceil(turns / np.radians(TURN))).astype(int)
+    cuts = unit_cuts(curved.runs, run, u, field, least, most_points)
+    around = Surroundings(
+        np.concatenate([straight.points, domain.holes, domain.seeds]),
+        len(straight.points),
+        straight.pieces,
+        curved.segment_curves[straight.piece_segments],
+        curved.curves,
+    )
+    return chords_along(curved.runs, cuts, TURN, around), around
+
+
+def _with_spans(
+    straight: Outline, domain: Domain, chords: Chords, spans: Index, field: ControlSpace
+) -> Outline:
+    """The straight part of an outline and the spans of the curves."""
+    n, s = len(straight.points), len(spans)
+    ends = np.stack([chords.ends[spans[:, 0], 0], chords.ends[spans[:, 1] - 1, 1]], axis=1)
+    inner = np.unique(ends[ends >= n])
+    number = np.arange(len(chords.points))
+    number[inner] = n + np.arange(len(inner))
+    ends = number[ends].astype(np.int32)
+
+    is_last = np.zeros(len(chords.run), bool)
+    is_last[spans[:, 1] - 1] = True
+    span = np.repeat(np.arange(s), np.diff(spans, axis=1)[:, 0])
+    cut = chords.points[chords.ends[~is_last, 1]]
+
+    first_of_run = np.full(len(domain.curved.runs), -1, np.int32)
+    on_run = np.flatnonzero(domain.curved.segment_runs >= 0)[::-1]
+    first_of_run[domain.curved.segment_runs[on_run]] = on_run
+    skeleton = chords.points[inner]
+    return Outline(
+        np.concatenate([straight.points, skeleton]),
+        np.concatenate([straight.tensors, field(skeleton)]),
+        np.concatenate([straight.segments, ends]),
+        np.concatenate([straight.pieces, ends]),
+        np.concatenate([straight.piece_segments, first_of_run[chords.run[spans[:, 0]]]]),
+        np.concatenate([straight.is_span, np.ones(s, bool)]),
+        np.concatenate([straight.cuts, cut]),
+        np.concatenate([straight.cut_tensors, field(cut)]),
+        np.concatenate([straight.piece, len(straight.pieces) + span[~is_last]]).astype(np.int32),
+    )
+
+
+def _canonical(points: Floats, pieces: Ints) -> Ints:
+    """Pieces, each from its lower left to its upper right end."""
+    p, q = points[pieces[:, 0]], points[pieces[:, 1]]
     turned = (p[:, 0] > q[:, 0]) | ((p[:, 0] == q[:, 0]) & (p[:, 1] > q[:, 1]))
-    out: Ints = np.where(turned[:, None], domain.pieces[:, ::-1], domain.pieces)
+    out: Ints = np.where(turned[:, None], pieces[:, ::-1], pieces)
     return out

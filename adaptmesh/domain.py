@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from types import MappingProxyType
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .curved import Curved, skeleton_of
+from .curves import Curve
+from .domain_input import (
+    OR_REPAIR,
+    Floats,
+    Inside,
+    Ints,
+    checked_names,
+    checked_points,
+    checked_segments,
+    read_only,
+)
 from .errors import DomainError
 
 if TYPE_CHECKING:
     from .mesh import Mesh
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-
-
-LARGEST = 1e75  # coordinate: its fourth power is still a double
-OR_REPAIR = "or let adaptmesh.repair do it"
 
 
 class Domain:
@@ -66,23 +71,29 @@ class Domain:
         names: Mapping[str, Iterable[int]] | None = None,
     ) -> None:
         self.points = checked_points(points, "point")
-        self.segments = _checked_segments(segments, self.points)
-        self.nesting = isinstance(holes, str)
-        if self.nesting and holes != "nesting":
-            raise DomainError(f"holes={holes!r}: give points inside the holes, or 'nesting'")
-        self.holes = checked_points(() if self.nesting else holes, "hole", least=0)
-        self.region_names, self.seeds, self.seed_regions = _checked_regions(regions or {})
-        self.names, self.segment_tags = checked_names(names or {}, len(self.segments))
+        self.segments = checked_segments(segments, self.points)
+        self.names, self.segment_tags = checked_names(names or {}, len(self.segments), "segment")
+        self._build(
+            Inside.checked(holes, regions), Curved.nothing(len(self.points), len(self.segments))
+        )
+
+    def _build(self, inside: Inside, curved: Curved) -> None:
+        """Triangulate what points, segments, names and tags enclose."""
+        self.nesting, self.holes = inside.nesting, inside.holes
+        self.region_names, self.seeds = inside.region_names, inside.seeds
+        self.seed_regions = inside.seed_regions
+        #: Which of the points and segments lie on curves, and where.
+        self.curved = curved
 
         triangles, labels, pieces, segment, is_boundary = self._triangulate()
         #: Constrained Delaunay triangles of the points alone, (m, 3), and their regions, (m,).
-        self.triangles: Ints = _read_only(triangles)
-        self.triangle_regions: Ints = _read_only(self.region_of_label(labels))
+        self.triangles: Ints = read_only(triangles)
+        self.triangle_regions: Ints = read_only(self.region_of_label(labels))
         #: The segments, divided where points lie on them, (p, 2); the segment each is a piece of,
         #: (p,); and whether it has the outside on one side, (p,).
-        self.pieces: Ints = _read_only(pieces)
-        self.piece_segments: Ints = _read_only(segment)
-        self.piece_is_boundary: NDArray[np.bool_] = _read_only(is_boundary)
+        self.pieces: Ints = read_only(pieces)
+        self.piece_segments: Ints = read_only(segment)
+        self.piece_is_boundary: NDArray[np.bool_] = read_only(is_boundary)
 
     @classmethod
     def polygon(
@@ -123,6 +134,75 @@ class Domain:
         return cls(corners, [(0, 1), (1, 2), (2, 3), (3, 0)], names=sides)
 
     @classmethod
+    def from_curves(
+        cls,
+        curves: Sequence[Curve],
+        *,
+        names: Mapping[str, Iterable[int]] | None = None,
+        holes: ArrayLike | str = "nesting",
+        regions: Mapping[str, ArrayLike] | None = None,
+        points: ArrayLike = (),
+        corner_angle: float = 40.0,
+        join_tolerance: float | None = None,
+    ) -> Domain:
+        """A domain whose boundaries and internal lines are curves.
+
+        Vertices of every mesh of it lie on the curves themselves, and on no polygon that stands
+        for them. Curves may bound the domain, separate regions, or just lie inside it.
+
+        Parameters
+        ----------
+        curves : sequence of Curve
+            From `adaptmesh.curves`; those of a closed boundary may come in any order and
+            direction. They may meet only at ends: cut a curve where another one ends on it, or
+            crosses it (`adaptmesh.curves.Curve.part`).
+        names : mapping of str to sequence of int, optional
+            The curves that bear each name, by number from 0. A curve bears at most one.
+        holes, regions
+            As in `Domain`.
+        points : (m, 2) array_like
+            Isolated points inside the domain, which become vertices.
+        corner_angle : float
+            In degrees. Two curves of one name that meet with a turn of at most this are one smooth
+            line, and where they meet is no vertex, unless both are straight. All other ends of
+            curves, and their `breaks`, are vertices of every mesh; so is the start of a closed
+            curve that is alone.
+        join_tolerance : float, optional
+            Ends that are nearer than this are the same. If not given, 1e-12 of the extent, what
+            the rounding of sines and cosines can leave.
+
+        Raises
+        ------
+        DomainError
+            As `Domain`, and where curves cross, or touch other than at ends, or come nearer than
+            chords between them could be told apart. It names the curves and the place.
+
+        Notes
+        -----
+        `points`, `segments` and `triangles` of the domain are a polygon inscribed in the curves
+        that is fine enough to predict sizes with; `curved` tells which of its points are on which
+        curve. `area` is that between the true curves.
+
+        Examples
+        --------
+        >>> from adaptmesh.curves import Circle
+        >>> ring = Domain.from_curves([Circle((0, 0), 2), Circle((0, 0), 1)], names={"hole": [1]})
+        >>> round(ring.area / np.pi, 12)
+        3.0
+        """
+        curves = tuple(curves)
+        numbers, tags = checked_names(names or {}, len(curves), "curve")
+        inside = Inside.checked(holes, regions)
+        isolated = checked_points(points, "point", least=0)
+        skeleton = skeleton_of(curves, tags, inside, isolated, corner_angle, join_tolerance)
+        domain = cls.__new__(cls)
+        domain.points = checked_points(skeleton.points, "point")
+        domain.segments, domain.segment_tags = skeleton.segments, skeleton.segment_tags
+        domain.names = numbers
+        domain._build(inside, skeleton.curved)
+        return domain
+
+    @classmethod
     def of_mesh(cls, mesh: Mesh) -> Domain:
         """The domain that a mesh covers, from its constrained edges, regions and names."""
         from .outline import domain_of_mesh
@@ -131,10 +211,27 @@ class Domain:
 
     @property
     def area(self) -> float:
-        """Area without the holes."""
+        """Area without the holes; that between the true curves if there are any."""
         p = self.points[self.triangles]
         u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-        return float(0.5 * np.sum(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
+        straight = 0.5 * np.sum(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+        return float(straight + self._area_beyond_chords)
+
+    @cached_property
+    def _area_beyond_chords(self) -> float:
+        """The area between the boundary and its chords, negative where the curve is inside."""
+        halves = np.concatenate(
+            [self.triangles[:, [0, 1]], self.triangles[:, [1, 2]], self.triangles[:, [2, 0]]]
+        )
+        n = len(self.points)
+        boundary = self.piece_segments[self.piece_is_boundary]
+        segments = boundary[self.curved.segment_runs[boundary] >= 0]
+        a, b = self.segments[segments].astype(np.int64).T
+        on_left = np.isin(a * n + b, halves[:, 0].astype(np.int64) * n + halves[:, 1])
+        areas = self.curved.areas_beside(
+            self.curved.segment_runs[segments], self.curved.segment_parameters[segments]
+        )
+        return float(np.sum(np.where(on_left, areas, -areas)))
 
     def __repr__(self) -> str:
         names = ", ".join([*self.names, *self.region_names])
@@ -192,107 +289,13 @@ class Domain:
 
     def _segment(self, i: int) -> str:
         (x0, y0), (x1, y1) = self.points[self.segments[i]].tolist()
-        return f"segment {i} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
+        what = self.curved.describe(i) if self.curved.curves else f"segment {i}"
+        return f"{what} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
 
     def _seed(self, i: int) -> str:
         number = int(self.seed_regions[i]) if 0 <= i < len(self.seed_regions) else 0
         names = [name for name, region in self.region_names.items() if region == number]
         return f"region {names[0]!r}" if names else f"region seed {i}"
-
-
-def _read_only(array: NDArray[Any]) -> NDArray[Any]:
-    array.flags.writeable = False
-    return array
-
-
-def checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
-    """Coordinates (n, 2) that areas can be computed of, or a `DomainError`."""
-    try:
-        out = np.array(points, dtype=np.float64, order="C")
-    except (TypeError, ValueError) as error:
-        raise DomainError(f"{what}s must be an (n, 2) array of numbers: {error}") from None
-    if out.size == 0:
-        out = out.reshape(0, 2)
-    if out.ndim != 2 or out.shape[1] != 2:
-        raise DomainError(f"{what}s must be an (n, 2) array, not one of shape {out.shape}")
-    if len(out) < least:
-        raise DomainError(f"{len(out)} {what}s: at least {least} are needed")
-    bad = np.flatnonzero(~np.isfinite(out).all(axis=1))
-    if len(bad):
-        x, y = out[bad[0]]
-        raise DomainError(f"{what} {bad[0]} is ({x}, {y}): coordinates must be finite")
-    bad = np.flatnonzero((np.abs(out) > LARGEST).any(axis=1))
-    if len(bad):
-        x, y = out[bad[0]]
-        raise DomainError(
-            f"{what} {bad[0]} is ({x:g}, {y:g}): areas and squares of coordinates beyond "
-            f"{LARGEST:g} overflow; choose another unit of length"
-        )
-    return _read_only(out)
-
-
-def checked_pairs(segments: ArrayLike, n_points: int) -> Ints:
-    """Pairs of point numbers, (k, 2), or a `DomainError`."""
-    raw = np.asarray(segments)
-    if raw.size == 0:
-        raise DomainError("no segments: say which points the boundary joins, e.g. Domain.polygon")
-    if raw.ndim != 2 or raw.shape[1] != 2:
-        raise DomainError(f"segments must be a (k, 2) array, not one of shape {raw.shape}")
-    if not np.issubdtype(raw.dtype, np.integer):
-        raise DomainError(f"segments must be integers, pairs of point numbers, not {raw.dtype}")
-    bad = np.flatnonzero(((raw < 0) | (raw >= n_points)).any(axis=1))
-    if len(bad):
-        i = bad[0]
-        raise DomainError(
-            f"segment {i} joins points {raw[i, 0]} and {raw[i, 1]}, but the points are numbered "
-            f"0 to {n_points - 1}"
-        )
-    return _read_only(np.array(raw, dtype=np.int32, order="C"))
-
-
-def _checked_segments(segments: ArrayLike, points: Floats) -> Ints:
-    out = checked_pairs(segments, len(points))
-    bad = np.flatnonzero((points[out[:, 0]] == points[out[:, 1]]).all(axis=1))
-    if len(bad):
-        i = bad[0]
-        x, y = points[out[i, 0]]
-        raise DomainError(
-            f"segment {i} has no length: its ends are both ({x:g}, {y:g}); remove it, {OR_REPAIR}"
-        )
-    return out
-
-
-def _checked_regions(regions: Mapping[str, ArrayLike]) -> tuple[Mapping[str, int], Floats, Ints]:
-    numbers: dict[str, int] = {}
-    seeds, owners = [], []
-    for name, where in regions.items():
-        numbers[str(name)] = len(numbers) + 1
-        points = checked_points(np.atleast_2d(np.asarray(where)), f"region {name!r} point", least=1)
-        seeds.append(points)
-        owners += [numbers[str(name)]] * len(points)
-    all_seeds = np.concatenate(seeds) if seeds else np.empty((0, 2))
-    return MappingProxyType(numbers), _read_only(all_seeds), _read_only(np.array(owners, np.int32))
-
-
-def checked_names(
-    names: Mapping[str, Iterable[int]], n_segments: int
-) -> tuple[Mapping[str, int], Ints]:
-    """The tag of each name and of each segment, (k,), or a `DomainError`."""
-    numbers: dict[str, int] = {}
-    tags = np.zeros(n_segments, np.int32)
-    for name, segments in names.items():
-        numbers[str(name)] = tag = len(numbers) + 1
-        for i in segments:
-            if not 0 <= i < n_segments:
-                raise DomainError(
-                    f"name {name!r} is given to segment {i}, but the segments are numbered "
-                    f"0 to {n_segments - 1}"
-                )
-            if tags[i] not in (0, tag):
-                other = next(n for n, t in numbers.items() if t == tags[i])
-                raise DomainError(f"segment {i} is named both {other!r} and {name!r}: choose one")
-            tags[i] = tag
-    return MappingProxyType(numbers), _read_only(tags)
 
 
 def _rings_of(geometry: Mapping[str, Any]) -> list[ArrayLike]:

@@ -14,7 +14,7 @@ import metrics
 from metrics import ControlSpace
 
 from . import _core
-from .boundary import Cuts, cut_segments, measure_edges
+from .boundary import Outline, cut_outline, measure_edges
 from .domain import Domain
 from .errors import BudgetError, DomainError
 from .mesh import Mesh
@@ -148,8 +148,8 @@ def generate(
     budget = Budget(max_vertices, predict(domain, samples))
     budget.check_prediction()
     report("cutting the boundary", 0.02)
-    cuts = cut_segments(domain, field, budget.max_vertices)
-    mesher = triangulate_outline(domain, cuts)
+    outline = cut_outline(domain, field, budget.max_vertices)
+    mesher = triangulate_outline(domain, outline)
     report("placing points", 0.05)
     if placement == "front":
         place_ahead_of_front(mesher, field, FrontPlacement(), budget, report)
@@ -173,7 +173,8 @@ def predict(domain: Domain, metric: Any) -> int:
     boundary = metrics.edge_lengths(
         domain.points, domain.pieces[domain.piece_is_boundary], field
     ).sum()
-    return max(len(domain.points), int(2 / np.sqrt(3) * complexity + boundary / 2) + 1)
+    least = max(3, int(domain.curved.is_vertex.sum()))
+    return max(least, int(2 / np.sqrt(3) * complexity + boundary / 2) + 1)
 
 
 @dataclass(frozen=True)
@@ -213,16 +214,33 @@ class Budget:
         return min(0.7, 0.05 + 0.65 * n_vertices / max(self.expected, 1))
 
 
-def triangulate_outline(domain: Domain, cuts: Cuts) -> _core.Mesher:
-    """The constrained triangulation of the domain's points, then of the cuts: metric Delaunay."""
-    mesher = _core.Mesher(
-        domain.points, cuts.tensors, domain.segments, domain.holes, domain.seeds, domain.nesting
-    )
-    mesher.swap(most_passes=OUTLINE_SWAPS)
-    mesher.cut_outline(
-        cuts.ends, domain.piece_segments, cuts.points, cuts.point_tensors, cuts.piece
-    )
-    return mesher
+def triangulate_outline(domain: Domain, outline: Outline) -> _core.Mesher:
+    """The constrained triangulation of the outline's points, then of its cuts: metric Delaunay.
+
+    A cut of a curve is off the chord that it divides, and can be hidden from it by triangles that
+    lie between. A span with such a cut is triangulated with all its cuts in another attempt.
+    """
+    while True:
+        mesher = _core.Mesher(
+            outline.points,
+            outline.tensors,
+            outline.segments,
+            domain.holes,
+            domain.seeds,
+            domain.nesting,
+        )
+        mesher.swap(most_passes=OUTLINE_SWAPS)
+        complete = mesher.cut_outline(
+            outline.pieces,
+            outline.piece_segments,
+            outline.cuts,
+            outline.cut_tensors,
+            outline.piece,
+        )
+        hidden = outline.is_span & ~complete
+        if not hidden.any():
+            return mesher
+        outline = outline.divided(hidden)
 
 
 def place_ahead_of_front(

@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .arrangement import Faces, Noded, Repair, Repairs, Words, at, find_faces, node, used_tolerance
 from .arrangement.numbering import unique_edges, used_points
-from .domain import Domain, checked_names, checked_pairs, checked_points
+from .domain import Domain
+from .domain_input import checked_names, checked_pairs, checked_points
 from .errors import DomainError
 from .raw import Outline
 

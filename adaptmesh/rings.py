@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arrangement import Repair, Words, at, first_of_equal
-from .domain import LARGEST
+from .domain_input import LARGEST
 from .errors import DomainError
 from .raw import Shape
 

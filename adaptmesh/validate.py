@@ -57,6 +57,7 @@ COVERING: Table[Subject] = {
 DOMAIN: Table[fidelity.DomainSubject] = {
     "points present": fidelity.points_present,
     "segments present": fidelity.segments_present,
+    "curves present": fidelity.curves_present,
     "edges on segments": fidelity.edges_on_segments,
     "area of domain": fidelity.area_of_domain,
 }
@@ -196,7 +197,10 @@ def validate(mesh: Mesh) -> Validity:
     cover = _run(COVERING, subject, all(border))
     checks = [*arrays, *neighbourhood, *marks, *border, *cover]
     if mesh.domain is not None:
-        checks += _run(DOMAIN, fidelity.DomainSubject(mesh), all(checks))
+        table = dict(DOMAIN)
+        if not mesh.domain.curved.runs:
+            del table["curves present"]
+        checks += _run(table, fidelity.DomainSubject(mesh), all(checks))
     return Validity(repr(mesh).strip("<>"), tuple(checks))
 
 

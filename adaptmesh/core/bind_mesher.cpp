@@ -84,13 +84,13 @@ class Mesher {
     }
 
     // Cuts the constrained edges with these ends, pieces of these segments; of each cut, `piece`
-    // tells on which it lies; the cuts of a piece are in order from its first end.
-    void cut_outline(const IndexPairs& ends, const Indices& segments, const Points& cuts,
-                     const Tensors& tensors, const Indices& piece) {
+    // tells on which it lies; the cuts of a piece are in order from its first end. Returns of each
+    // piece whether all its cuts could be made.
+    nb::object cut_outline(const IndexPairs& ends, const Indices& segments, const Points& cuts,
+                           const Tensors& tensors, const Indices& piece) {
         expect_rows(segments.shape(0), ends.shape(0), "segments");
         expect_rows(tensors.shape(0), cuts.shape(0), "tensors");
         expect_rows(piece.shape(0), cuts.shape(0), "piece");
-        nb::gil_scoped_release release;
         std::vector<Piece> pieces(ends.shape(0));
         for (std::size_t i = 0; i < pieces.size(); ++i)
             pieces[i] = {ends(i, 0), ends(i, 1), segments(i), {}};
@@ -99,7 +99,12 @@ class Mesher {
             p.cuts.push_back(
                 Vertex::make({cuts(i, 0), cuts(i, 1)}, tensor_in(tensors, i), p.segment));
         }
-        constrained_ = OutlineCutter(mesh_).cut(pieces, poll_);
+        OutlineCutter cutter(mesh_);
+        {
+            nb::gil_scoped_release release;
+            constrained_ = cutter.cut(pieces, poll_);
+        }
+        return to_numpy(std::move(cutter.is_complete), {pieces.size()}).attr("view")("bool");
     }
 
     std::size_t vertex_count() const { return mesh_.vertices.size(); }

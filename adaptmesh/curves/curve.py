@@ -30,6 +30,11 @@ class Curve(ABC):
         """Where it has kinks, (k,), ascending, inside (0, 1)."""
         return np.empty(0)
 
+    @property
+    def knots(self) -> Floats:
+        """Where its pieces meet, (k,), ascending, inside (0, 1): it is analytic between them."""
+        return self.breaks
+
     def point(self, t: ArrayLike) -> Floats:
         """Points (n, 2) at t (n,).
 
@@ -98,8 +103,16 @@ class Part(Curve):
     @property
     def breaks(self) -> Floats:
         """The kinks of the whole that lie in the part."""
-        inside = (self.whole.breaks - self.t0) / (self.t1 - self.t0)
-        out: Floats = np.sort(inside[(inside > 0) & (inside < 1)])
+        return self._inside(self.whole.breaks)
+
+    @property
+    def knots(self) -> Floats:
+        """The knots of the whole that lie in the part."""
+        return self._inside(self.whole.knots)
+
+    def _inside(self, t_of_whole: Floats) -> Floats:
+        t = (t_of_whole - self.t0) / (self.t1 - self.t0)
+        out: Floats = np.sort(t[(t > 0) & (t < 1)])
         return out
 
     def _point(self, t: Floats) -> Floats:

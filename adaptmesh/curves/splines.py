@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import DomainError
 from .checks import check_distinct, checked_points
@@ -55,9 +55,14 @@ class Spline(Curve):
         check_distinct(p, "Spline")
         self.points, self.is_closed = p, closed
         along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(p, axis=0).T))])
-        self._spline = CubicSpline(
-            along / along[-1], p, bc_type="periodic" if closed else "not-a-knot"
-        )
+        self._t = along / along[-1]
+        self._spline = CubicSpline(self._t, p, bc_type="periodic" if closed else "not-a-knot")
+
+    @property
+    def knots(self) -> Floats:
+        """The parameters of the points between its ends."""
+        inner: Floats = self._t[1:-1]
+        return inner
 
     def _point(self, t: Floats) -> Floats:
         return np.asarray(self._spline(t), np.float64)
@@ -107,17 +112,27 @@ class BSpline(Curve):
                 raise DomainError("BSpline: a closed one has equidistant knots; leave `knots` out")
             p, w = (np.concatenate([a, a[:degree]]) for a in (p, w))
         self.control_points, self.weights = p, w
-        self.knots = self._checked_knots(knots)
+        self._u = self._checked_knots(knots)
         self._spline = self._with_coefficients(np.column_stack([p * w[:, None], w]))
         self._slope = self._spline.derivative()
 
     @property
     def breaks(self) -> Floats:
         """The knots where it is but continuous: those as many as its degree."""
-        inner = self.knots[self.degree + 1 : -self.degree - 1]
-        knots, times = np.unique(inner[(inner > 0) & (inner < 1)], return_counts=True)
+        knots, times = self._inner_knots
         out: Floats = knots[times >= self.degree]
         return out
+
+    @property
+    def knots(self) -> Floats:
+        """The knots inside (0, 1)."""
+        return self._inner_knots[0]
+
+    @property
+    def _inner_knots(self) -> tuple[Floats, NDArray[np.intp]]:
+        """Those inside (0, 1), each once, and how many times each is there."""
+        inner = self._u[(self._u > 0) & (self._u < 1)]
+        return np.unique(inner, return_counts=True)
 
     def _checked_knots(self, knots: ArrayLike | None) -> Floats:
         n, k = len(self.control_points), self.degree
@@ -139,7 +154,7 @@ class BSpline(Curve):
     def _with_coefficients(self, coefficients: Floats) -> ScipyBSpline:
         from scipy.interpolate import BSpline as ScipyBSpline
 
-        return ScipyBSpline(self.knots, coefficients, self.degree)
+        return ScipyBSpline(self._u, coefficients, self.degree)
 
     def _point(self, t: Floats) -> Floats:
         values = self._spline(t)

@@ -11,9 +11,11 @@ points or with none: one point of each is looked up.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from .. import _core
 from .subject import Bools, Finding, Floats, Index, Ints, Subject, finding
 
 BLOCK = 1_000_000  # pairs examined at a time
@@ -103,25 +105,29 @@ def crossings(s: Subject, ends: Index) -> Ints:
         found = len(e) + 1
         e += start
         e, f = e[e < f], f[e < f]
-        met = meet(s, ends[e], ends[f])
+        met = meet(s.points, ends[e], ends[f])
         if len(met):
             return np.stack([e[met], f[met]], axis=1)[:MOST]
         start, size = start + size, int(np.clip(BLOCK * size // found, 1, 2**16))
     return np.empty((0, 2), np.int64)
 
 
-def meet(s: Subject, e: Index, f: Index) -> Ints:
+def meet(points: Floats, e: Index, f: Index) -> Ints:
     """Which of the pairs of edges e (k, 2) and f (k, 2) have more in common than an end."""
+
+    def orient(a: Index, b: Index, c: Index) -> NDArray[np.int8]:
+        return np.asarray(_core.orient2d(points[a], points[b], points[c]))
+
     kept = np.arange(len(e))
     for one, other in ((e, f), (f, e)):  # keep pairs of which neither lies beside the other
         a, b = one[kept].T
         c, d = other[kept].T
-        kept = kept[s.orient(a, b, c) * s.orient(a, b, d) <= 0]
+        kept = kept[orient(a, b, c) * orient(a, b, d) <= 0]
     (a, b), (c, d) = e[kept].T, f[kept].T
-    sides = [s.orient(a, b, c), s.orient(a, b, d), s.orient(c, d, a), s.orient(c, d, b)]
+    sides = [orient(a, b, c), orient(a, b, d), orient(c, d, a), orient(c, d, b)]
     out: Bools = np.all(np.not_equal(sides, 0), axis=0)  # they cross
     for side, p, q, r in zip(sides, (a, a, c, c), (b, b, d, d), (c, d, a, b), strict=True):
-        x, y, z = s.points[p], s.points[q], s.points[r]
+        x, y, z = points[p], points[q], points[r]
         between = ((np.minimum(x, y) <= z) & (z <= np.maximum(x, y))).all(axis=1)
         out |= (side == 0) & between & (r != p) & (r != q)  # r hangs on the edge pq
     return kept[out]

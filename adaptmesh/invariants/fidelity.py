@@ -2,7 +2,8 @@
 
 Points placed along a slanted segment are rounded to the nearest coordinates. So a point is on a
 segment if it is nearer than `TOLERANCE` times the diameter of the domain plus a few units in the
-last place of the largest coordinate.
+last place of the largest coordinate. A point is on a curve if the nearest place of the curve is as
+near.
 """
 
 from __future__ import annotations
@@ -12,12 +13,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .subject import Bools, Finding, Floats, Index, Ints, Subject, finding
+from ..runs import derivatives_on, points_on
+from .subject import Bools, Finding, Floats, Index, Ints, Subject, edge_keys, finding
 
 if TYPE_CHECKING:
     from ..domain import Domain
 
 TOLERANCE = 1e-12
+
+QUADRATURE = 1e-9
+"""Areas between curves and their chords are right to this share."""
+
+NEWTON_STEPS = 8
+"""Of the search for the nearest place of a curve; it converges quadratically from a chord of it."""
+
+REACH = 0.15
+"""Curves are nearer to the chords of the domain than this share of the chord's length."""
 
 
 class DomainSubject(Subject):
@@ -34,6 +45,11 @@ class DomainSubject(Subject):
     def corners(self) -> Floats:
         """The points of the domain, scaled as those of the mesh."""
         return self.scale(self.domain.points)
+
+    @cached_property
+    def straight(self) -> Ints:
+        """The segments of the domain that are no chords of curves."""
+        return np.flatnonzero(self.domain.curved.segment_runs < 0)
 
     @cached_property
     def tolerance(self) -> float:
@@ -66,10 +82,11 @@ class DomainSubject(Subject):
         """
         import shapely
 
-        a, b = (self.corners[i] for i in self.domain.segments.T)
+        a, b = (self.corners[i] for i in self.domain.segments[self.straight].T)
         tree = shapely.STRtree(shapely.linestrings(np.stack([a, b], axis=1)))
         lines = shapely.linestrings(self.points[self.mesh.edges])
         edge, segment = tree.query(lines, predicate="dwithin", distance=self.tolerance)
+        segment = self.straight[segment]
         start, end = self.mesh.edges[edge].T
         off = np.maximum(self._distance(segment, start), self._distance(segment, end))
         # An edge belongs to one segment: where two are in reach (tiny edges at a corner,
@@ -96,16 +113,77 @@ class DomainSubject(Subject):
         out: Floats = ((self.points[vertex] - a) * (b - a)).sum(axis=1)
         return out
 
+    @cached_property
+    def on_runs(self) -> tuple[Ints, Floats, Ints]:
+        """Vertices of constrained edges on curves, in order: the run, the parameter, the vertex."""
+        import shapely
+
+        curved = self.domain.curved
+        chords = np.flatnonzero(curved.segment_runs >= 0)
+        a, b = (self.corners[i] for i in self.domain.segments[chords].T)
+        vertices = np.unique(self.mesh.edges)
+        tree = shapely.STRtree(shapely.points(self.points[vertices]))
+        lines = shapely.linestrings(np.stack([a, b], axis=1))
+        chord, v = tree.query(lines, "dwithin", distance=REACH * shapely.length(lines))
+        v, run = vertices[v], curved.segment_runs[chords[chord]].astype(np.int64)
+        u = self._nearest(v, run, curved.segment_parameters[chords[chord]])
+        ends = np.array([r.length for r in curved.runs])[run]
+        for end in (np.zeros(len(u)), ends):  # what rounding leaves of a corner's parameter
+            u = np.where(np.abs(u - end) < 1e-9, end, u)
+        off = self.scale(points_on(curved.runs, run, u)) - self.points[v]
+        on = np.hypot(*off.T) <= self.tolerance
+        order = np.lexsort((u[on], run[on]))
+        run, u, v = run[on][order], u[on][order], v[on][order]
+        again = (np.diff(run, prepend=-1) == 0) & (np.diff(v, prepend=-1) == 0)
+        return run[~again], u[~again], v[~again]
+
+    def _nearest(self, vertex: Index, run: Index, u: Floats) -> Floats:
+        """The parameters of runs, about in these ranges (k, 2), nearest to points of the mesh."""
+        runs = self.domain.curved.runs
+        p = self.mesh.points[vertex]
+        a, b = (points_on(runs, run, u[:, i]) for i in (0, 1))
+        along = ((p - a) * (b - a)).sum(axis=1) / ((b - a) ** 2).sum(axis=1)
+        length = u[:, 1] - u[:, 0]
+        low = np.maximum(u[:, 0] - length, 0)
+        high = np.minimum(u[:, 1] + length, [runs[r].length for r in run])
+        out = np.clip(u[:, 0] + along * length, low, high)
+        for _ in range(NEWTON_STEPS):
+            d = derivatives_on(runs, run, out)
+            step = ((p - points_on(runs, run, out)) * d).sum(axis=1) / (d**2).sum(axis=1)
+            out = np.clip(out + step, low, high)
+        nearest: Floats = out
+        return nearest
+
+    @cached_property
+    def run_steps(self) -> tuple[Ints, Floats, Ints, Ints]:
+        """Steps along runs, in order: the run, both parameters, both vertices, and the edge, or -1.
+
+        A run that does not begin or end at its corner has a step without an edge too.
+        """
+        run, u, v = self.on_runs
+        n = len(self.mesh.points)
+        inner = np.flatnonzero(np.diff(run) == 0)
+        pairs = np.stack([v[inner], v[inner + 1]], axis=1)
+        keys = edge_keys(self.mesh.edges[:, 0], self.mesh.edges[:, 1], n)
+        order = np.argsort(keys)
+        wanted = edge_keys(pairs[:, 0], pairs[:, 1], n)
+        place = np.minimum(np.searchsorted(keys, wanted, sorter=order), len(keys) - 1)
+        edge = np.where(keys[order[place]] == wanted, order[place], -1)
+        return run[inner], np.stack([u[inner], u[inner + 1]], axis=1), pairs, edge
+
 
 def points_present(s: DomainSubject) -> Finding:
     """Every point of the domain is a point of the mesh."""
     xy = s.domain.points
+    is_vertex = s.domain.curved.is_vertex
 
     def show(i: int) -> str:
         return f"point {i} of the domain ({float(xy[i, 0])!r}, {float(xy[i, 1])!r})"
 
-    bad = np.flatnonzero(s.vertices < 0)
-    return finding(bad, f"{len(xy)} points", "points of the domain are missing", show)
+    bad = np.flatnonzero((s.vertices < 0) & is_vertex)
+    return finding(
+        bad, f"{np.count_nonzero(is_vertex)} points", "points of the domain are missing", show
+    )
 
 
 def segments_present(s: DomainSubject) -> Finding:
@@ -127,7 +205,7 @@ def segments_present(s: DomainSubject) -> Finding:
     starts_late = first & (begin != a[segment])
     other_tag = s.mesh.edge_tags[edge] != domain.segment_tags[segment]
 
-    broken = np.ones(len(domain.segments), bool)
+    broken = domain.curved.segment_runs < 0
     broken[segment] = False  # those without a step stay broken
     broken[segment[leaves | starts_late]] = True
     mistagged = np.zeros(len(domain.segments), bool)
@@ -138,15 +216,48 @@ def segments_present(s: DomainSubject) -> Finding:
         why = "is no chain of constrained edges" if broken[i] else "has edges with another tag"
         return f"segment {i} from ({x0!r}, {y0!r}) to ({x1!r}, {y1!r}) {why}"
 
-    good = f"{len(broken)} segments, to {s.true_tolerance:.2g}"
+    good = f"{len(s.straight)} segments, to {s.true_tolerance:.2g}"
     wrong = "segments of the domain are missing or have another tag"
     return finding(np.flatnonzero(broken | mistagged), good, wrong, show)
 
 
+def curves_present(s: DomainSubject) -> Finding:
+    """Every run of curves is a chain of constrained edges, from corner to corner, with its tag."""
+    curved, domain = s.domain.curved, s.domain
+    run, _, _, edge = s.run_steps
+    tag = np.zeros(len(curved.runs), np.int64)
+    on_run = curved.segment_runs >= 0
+    tag[curved.segment_runs[on_run]] = domain.segment_tags[on_run]
+
+    broken = np.ones(len(curved.runs), bool)
+    broken[run] = False
+    broken[run[edge < 0]] = True
+    found, u, _ = s.on_runs
+    for end in (np.zeros(len(broken)), np.array([r.length for r in curved.runs])):
+        met = np.zeros(len(broken), bool)
+        met[found[u == end[found]]] = True
+        broken |= ~met
+    mistagged = np.zeros(len(broken), bool)
+    mistagged[run[(edge >= 0) & (s.mesh.edge_tags[edge] != tag[run])]] = True
+
+    def show(r: int) -> str:
+        (x0, y0), (x1, y1) = curved.runs[r].start.tolist(), curved.runs[r].end.tolist()
+        first = int(np.flatnonzero(curved.segment_runs == r)[0])
+        why = "is no chain of constrained edges" if broken[r] else "has edges with another tag"
+        return f"{curved.describe(first)} from ({x0!r}, {y0!r}) to ({x1!r}, {y1!r}) {why}"
+
+    good = f"{len(broken)} runs, to {s.true_tolerance:.2g}"
+    wrong = "curves of the domain are missing or have another tag"
+    return finding(np.flatnonzero(broken | mistagged), good, wrong, show)
+
+
 def edges_on_segments(s: DomainSubject) -> Finding:
-    """Every constrained edge lies on a segment of the domain."""
+    """Every constrained edge lies on a segment of the domain, or is a chord of a curve of it."""
     stray = np.ones(len(s.mesh.edges), bool)
     stray[s.steps[1]] = False
+    if s.domain.curved.runs:
+        edge = s.run_steps[3]
+        stray[edge[edge >= 0]] = False
 
     def show(e: int) -> str:
         return f"constrained edge {s.at(*s.mesh.edges[e])}"
@@ -156,9 +267,29 @@ def edges_on_segments(s: DomainSubject) -> Finding:
 
 
 def area_of_domain(s: DomainSubject) -> Finding:
-    """The triangles have the area of the domain, to within what points on segments may be off."""
+    """The triangles have the area of the domain, to within what points on segments may be off.
+
+    That between curves and their chords is what a mesh of curves has less, or more.
+    """
     a, b = (s.domain.points[i] for i in s.domain.segments.T)
     tolerance = s.true_tolerance * float(np.hypot(*(b - a).T).sum())
     found, wanted = float(s.mesh.areas.sum()), s.domain.area
+    if s.domain.curved.runs:
+        beside = _areas_beyond_border(s)
+        wanted -= float(beside.sum())
+        tolerance += QUADRATURE * float(np.abs(beside).sum())
     note = f"{found!r}, of the domain {wanted!r}"
     return Finding(int(not abs(found - wanted) <= tolerance), f"{note}, to {tolerance:.2g}")
+
+
+def _areas_beyond_border(s: DomainSubject) -> Floats:
+    """Areas between border edges and their curves, positive where the curve is outside."""
+    run, u, pairs, _ = s.run_steps
+    n = len(s.mesh.points)
+    border = s.sides.ends(s.sides.border)  # the mesh is on their left
+    keys = border[:, 0] * n + border[:, 1]
+    on_left = np.isin(pairs[:, 0] * n + pairs[:, 1], keys)
+    on_right = np.isin(pairs[:, 1] * n + pairs[:, 0], keys)
+    areas = s.domain.curved.areas_beside(run, u)
+    out: Floats = areas * (on_left.astype(float) - on_right.astype(float))
+    return out

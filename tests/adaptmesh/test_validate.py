@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from adaptmesh.curved import Curved
 from adaptmesh.errors import AdaptmeshError
 from adaptmesh.invariants import fidelity
 from adaptmesh.mesh import Mesh
@@ -243,7 +244,9 @@ def square_domain(**changes):
         "segment_tags": np.array([1, 0, 2, 0]),
         "area": 1.0,
     }
-    return SimpleNamespace(**{**domain, **changes})
+    domain |= changes
+    curved = Curved.nothing(len(domain["points"]), len(domain["segments"]))
+    return SimpleNamespace(**domain, curved=curved)
 
 
 def square_mesh(n=3, tags=(1, 0, 2, 0), **changes) -> Mesh:

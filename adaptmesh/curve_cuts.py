@@ -1,0 +1,138 @@
+"""Where to cut runs of curves so that the parts have unit metric length along the true curve.
+
+As on straight segments, the metric is asked for in rounds, at all places of all runs at once: a
+chord is trusted when its own length and that of its halves agree, and halved otherwise. The ends of
+chords are on the curve, so that the metric is seen where the vertices will be.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metrics import ControlSpace
+from metrics.tensor import lengths
+
+from .errors import BudgetError
+from .runs import Run, points_on
+
+Floats = NDArray[np.float64]
+Index = NDArray[np.integer]
+
+# These are explained in core/edge_sampler.hpp, which does the same on straight lines.
+LONGEST_CHORD = 0.125
+AGREEMENT = 0.05
+SHORTEST_CHORD = 0.05
+FINE_DEPTH = 10
+LONGEST_FINE_CHORD = 4.0
+DEEPEST = 45
+
+
+def unit_cuts(
+    runs: Sequence[Run],
+    run: Index,
+    u: Floats,
+    field: ControlSpace,
+    least_parts: Index,
+    most_points: int,
+) -> list[Floats]:
+    """Parameters that cut each run into parts of (nearly) unit metric length.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+    run : (k,) array of int
+    u : (k, 2) array
+        Chords that cover the runs, to begin with.
+    field : ControlSpace
+    least_parts : (r,) array of int
+        Of each run.
+    most_points : int
+        More cuts than this are refused.
+
+    Returns
+    -------
+    list of (m,) arrays
+        Of each run, ascending, with both ends.
+    """
+    run, u, length, speeds = _measured(runs, run, u, field, most_points)
+    first = np.searchsorted(run, np.arange(len(runs) + 1))
+    return [
+        _equal_shares(u[i:j], length[i:j], speeds[i:j], int(least))
+        for (i, j), least in zip(itertools.pairwise(first), least_parts, strict=True)
+    ]
+
+
+def _measured(
+    runs: Sequence[Run], run: Index, u: Floats, field: ControlSpace, most_points: int
+) -> tuple[Index, Floats, Floats, Floats]:
+    """Chords short enough to be trusted, in order: run, parameters, length, speeds at the ends."""
+    places = points_on(runs, np.repeat(run, 2), u.ravel())
+    tensors = field(places)
+    chord = np.arange(2 * len(run)).reshape(-1, 2)  # its ends, by place
+    trusted: list[list[NDArray[Any]]] = []
+    depth = 0
+    while len(chord):
+        _check_budget(len(chord), most_points, places[chord[0, 0]])
+        middle = len(places) + np.arange(len(chord))
+        u_middle = u.mean(axis=1)
+        new = points_on(runs, run, u_middle)
+        places, tensors = np.concatenate([places, new]), np.concatenate([tensors, field(new)])
+        left, right = (np.stack(e, axis=1) for e in ((chord[:, 0], middle), (middle, chord[:, 1])))
+        whole, one, other = (_lengths(places, tensors, e) for e in (chord, left, right))
+        both = one + other
+        longest = LONGEST_CHORD if depth < FINE_DEPTH else LONGEST_FINE_CHORD
+        enough = (np.abs(whole - both) <= AGREEMENT * both) & (both <= longest)
+        enough |= (both <= SHORTEST_CHORD) | (depth >= DEEPEST)
+        halves = (
+            np.repeat(run, 2),
+            np.stack([u[:, 0], u_middle, u_middle, u[:, 1]], axis=1).reshape(-1, 2),
+            np.stack([left, right], axis=1).reshape(-1, 2),
+            np.stack([one, other], axis=1).ravel(),
+        )
+        kept = np.repeat(enough, 2)
+        trusted.append([a[kept] for a in halves])
+        run, u, chord = halves[0][~kept], halves[1][~kept], halves[2][~kept]
+        depth += 1
+    run, u, chord, length = (np.concatenate([a[i] for a in trusted]) for i in range(4))
+    order = np.lexsort((u[:, 0], run))
+    vectors = places[chord[:, 1]] - places[chord[:, 0]]
+    speeds = np.stack([lengths(m, m, vectors) for m in (tensors[chord[:, i]] for i in (0, 1))], 1)
+    return run[order], u[order], length[order], speeds[order]
+
+
+def _lengths(places: Floats, tensors: Floats, chord: Index) -> Floats:
+    a, b = chord.T
+    return lengths(tensors[a], tensors[b], places[b] - places[a])
+
+
+def _check_budget(n_chords: int, most_points: int, near: Floats) -> None:
+    if n_chords > max(most_points, 1000) * 2 / LONGEST_CHORD:
+        x, y = near
+        raise BudgetError(
+            f"the boundary alone needs more than {most_points:,} vertices, many of them near "
+            f"({x:g}, {y:g}): ask for larger sizes, or allow more"
+        )
+
+
+def _equal_shares(u: Floats, length: Floats, speeds: Floats, least: int) -> Floats:
+    """Parameters at equal shares of the length of a run, both ends included.
+
+    The size is taken to be geometric along a chord, as in `EdgeSampler::point_in_piece`.
+    """
+    ends = np.cumsum(length)
+    total = ends[-1] * (1 - 1e-9)
+    parts = max(least, int(0.5 * (1 + np.sqrt(1 + 4 * total * total))))
+    goal = np.arange(1, parts) * (ends[-1] / parts)
+    k = np.minimum(np.searchsorted(ends, goal), len(ends) - 1)
+    share = np.clip(1 - (ends[k] - goal) / length[k], 0, 1)
+    r = speeds[k, 1] / speeds[k, 0]
+    flat = np.abs(r - 1) < 1e-6
+    r = np.where(flat, 2.0, r)
+    s = np.where(flat, share, np.log1p(share * (r - 1)) / np.log(r))
+    inner = u[k, 0] + s * (u[k, 1] - u[k, 0])
+    return np.unique(np.concatenate([u[:1, 0], inner, u[-1:, 1]]))

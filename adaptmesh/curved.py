@@ -1,0 +1,188 @@
+"""The curves of a domain, and the polygon inscribed in them that its other parts work with."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from .chords import Surroundings, chords_along, name_of_curve
+from .curves import Curve
+from .domain_input import Floats, Inside, Ints, read_only
+from .errors import DomainError
+from .runs import Run, join
+
+JOINED = 1e-12
+"""Ends of curves that are nearer than this share of the extent are one, if nothing else is said."""
+
+FIRST_CHORDS = 8
+"""Chords along each curve before they are looked at."""
+
+TURN = 15.0
+"""Curves turn by at most so many degrees along a chord of the inscribed polygon."""
+
+GAUSS = np.polynomial.legendre.leggauss(10)
+
+
+@dataclass(frozen=True, eq=False)
+class Curved:
+    """Which points and segments of a domain are on curves.
+
+    Attributes
+    ----------
+    curves : tuple of Curve
+        As they were given; none for a domain of points and segments.
+    runs : tuple of Run
+        What is curved, from corner to corner.
+    segment_curves : (k,) array of int32
+        The curve that each segment of the domain lies on or is a chord of; -1 for none.
+    segment_runs : (k,) array of int32
+        The run that it is a chord of; -1 if it is straight itself.
+    segment_parameters : (k, 2) array
+        The parameters of its ends on the run.
+    is_vertex : (n,) array of bool
+        Whether a point of the domain is a vertex of every mesh; the others only hold the chords.
+    """
+
+    curves: tuple[Curve, ...]
+    runs: tuple[Run, ...]
+    segment_curves: Ints
+    segment_runs: Ints
+    segment_parameters: Floats
+    is_vertex: NDArray[np.bool_]
+
+    @classmethod
+    def nothing(cls, n_points: int, n_segments: int) -> Curved:
+        """Of a domain of points and segments."""
+        none = read_only(np.full(n_segments, -1, np.int32))
+        parameters = read_only(np.zeros((n_segments, 2)))
+        return cls((), (), none, none, parameters, read_only(np.ones(n_points, bool)))
+
+    def describe(self, segment: int) -> str:
+        """The curve of a segment in words."""
+        return name_of_curve(self.curves, int(self.segment_curves[segment]))
+
+    def areas_beside(self, run: NDArray[np.integer], u: Floats) -> Floats:
+        """Areas between chords, given by run (k,) and parameters (k, 2), and their curves.
+
+        Positive where the curve bends to the right of its chord; by Gauss's quadrature of
+        (p - p0) x dp / 2, on four parts between knots of the curve.
+        """
+        out = np.zeros(len(run))
+        x, w = 0.5 * (GAUSS[0] + 1), 0.5 * GAUSS[1]
+        for k in range(len(run)):
+            line, (u0, u1) = self.runs[run[k]], u[k]
+            inner = line.knots[(line.knots > u0) & (line.knots < u1)]
+            ends = np.concatenate([[u0], inner, [u1]])
+            steps = np.concatenate([np.linspace(a, b, 5)[:-1] for a, b in itertools.pairwise(ends)])
+            du = np.diff(steps, append=u1)
+            at = steps[:, None] + x * du[:, None]
+            p = line.point(at.ravel()) - line.point(u[k, :1])
+            d = line.derivative(at.ravel())
+            cross = (p[:, 0] * d[:, 1] - p[:, 1] * d[:, 0]).reshape(at.shape)
+            out[k] = 0.5 * (cross @ w) @ du
+        return out
+
+
+class Skeleton(NamedTuple):
+    """The polygon inscribed in curves, as a domain takes it."""
+
+    points: Floats
+    segments: Ints
+    segment_tags: Ints
+    curved: Curved
+
+
+def skeleton_of(
+    curves: Sequence[Curve],
+    tags: Ints,
+    inside: Inside,
+    isolated: Floats,
+    corner_angle: float,
+    join_tolerance: float | None,
+) -> Skeleton:
+    """Join curves and inscribe a polygon; arguments as those of `Domain.from_curves`."""
+    _check_curves(curves)
+    extent = _extent(curves)
+    if join_tolerance is None:
+        join_tolerance = JOINED * extent
+    if not 0 <= join_tolerance < extent:
+        raise DomainError(
+            f"join_tolerance={join_tolerance}: a length from 0 to the extent, {extent:g}, is wanted"
+        )
+    if not 0 <= corner_angle <= 180:
+        raise DomainError(f"corner_angle={corner_angle}: degrees from 0 to 180 are wanted")
+    joined = join(curves, tags, corner_angle, join_tolerance)
+    vertices = np.concatenate([joined.corners, isolated])
+    lines, line_curves = _divided(vertices, joined.lines, joined.line_curves)
+    around = Surroundings(
+        np.concatenate([vertices, inside.holes, inside.seeds]),
+        len(vertices),
+        lines,
+        line_curves,
+        tuple(curves),
+    )
+    points = vertices
+    run, u = np.empty(0, np.int32), np.empty((0, 2))
+    segments = lines
+    if joined.runs:
+        first = [np.linspace(0, r.length, FIRST_CHORDS * len(r.parts) + 1) for r in joined.runs]
+        chords = chords_along(joined.runs, first, TURN, around)
+        points, run, u = chords.points, chords.run, chords.u
+        segments = np.concatenate([lines, chords.ends])
+    owners = np.concatenate(
+        [
+            line_curves,
+            [joined.runs[r].curve_at(m) for r, m in zip(run, u.mean(axis=1), strict=True)],
+        ]
+    ).astype(np.int32)
+    n = len(lines)
+    curved = Curved(
+        tuple(curves),
+        joined.runs,
+        read_only(owners),
+        read_only(np.concatenate([np.full(n, -1, np.int32), run])),
+        read_only(np.concatenate([np.zeros((n, 2)), u])),
+        read_only(np.arange(len(points)) < len(vertices)),
+    )
+    return Skeleton(points, read_only(segments), read_only(tags[owners]), curved)
+
+
+def _check_curves(curves: Sequence[Curve]) -> None:
+    if not curves:
+        raise DomainError("no curves: give those that bound the domain, from adaptmesh.curves")
+    for i, curve in enumerate(curves):
+        if not isinstance(curve, Curve):
+            raise DomainError(
+                f"curve {i} is a {type(curve).__name__}: make it one of adaptmesh.curves"
+            )
+
+
+def _divided(points: Floats, lines: Ints, owners: Ints) -> tuple[Ints, Ints]:
+    """Straight lines (k, 2) divided where points lie exactly on them, and the owner of each."""
+    import shapely
+
+    tree = shapely.STRtree(shapely.points(points))
+    line, point = tree.query(shapely.linestrings(points[lines]))
+    a, b = lines[line].T
+    on = (_core.orient2d(points[a], points[b], points[point]) == 0) & (point != a) & (point != b)
+    line, point = line[on], point[on]
+    along = ((points[point] - points[lines[line, 0]]) ** 2).sum(axis=1)
+    out, out_owners = [], []
+    for k, (a, b) in enumerate(lines.tolist()):
+        mine = line == k
+        between = point[mine][np.argsort(along[mine])].tolist()
+        out += list(itertools.pairwise([a, *between, b]))
+        out_owners += [owners[k]] * (len(between) + 1)
+    return np.array(out, np.int32).reshape(-1, 2), np.array(out_owners, np.int32)
+
+
+def _extent(curves: Sequence[Curve]) -> float:
+    looks = np.linspace(0, 1, 9)
+    points = np.concatenate([curve.point(np.append(looks, curve.breaks)) for curve in curves])
+    return float(np.ptp(points, axis=0).max())

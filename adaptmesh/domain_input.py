@@ -1,0 +1,135 @@
+"""What a domain is made of, checked: points, segments, names, holes and regions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import DomainError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+LARGEST = 1e75  # coordinate: its fourth power is still a double
+OR_REPAIR = "or let adaptmesh.repair do it"
+
+
+@dataclass(frozen=True, eq=False)
+class Inside:
+    """What is inside the boundaries: holes, and regions with their seeds."""
+
+    nesting: bool
+    holes: Floats
+    region_names: Mapping[str, int]
+    seeds: Floats
+    seed_regions: Ints
+
+    @classmethod
+    def checked(cls, holes: ArrayLike | str, regions: Mapping[str, ArrayLike] | None) -> Inside:
+        """From the arguments of `Domain`."""
+        nesting = isinstance(holes, str)
+        if nesting and holes != "nesting":
+            raise DomainError(f"holes={holes!r}: give points inside the holes, or 'nesting'")
+        places = checked_points(() if nesting else holes, "hole", least=0)
+        return cls(nesting, places, *checked_regions(regions or {}))
+
+
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    array.flags.writeable = False
+    return array
+
+
+def checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
+    """Coordinates (n, 2) that areas can be computed of, or a `DomainError`."""
+    try:
+        out = np.array(points, dtype=np.float64, order="C")
+    except (TypeError, ValueError) as error:
+        raise DomainError(f"{what}s must be an (n, 2) array of numbers: {error}") from None
+    if out.size == 0:
+        out = out.reshape(0, 2)
+    if out.ndim != 2 or out.shape[1] != 2:
+        raise DomainError(f"{what}s must be an (n, 2) array, not one of shape {out.shape}")
+    if len(out) < least:
+        raise DomainError(f"{len(out)} {what}s: at least {least} are needed")
+    bad = np.flatnonzero(~np.isfinite(out).all(axis=1))
+    if len(bad):
+        x, y = out[bad[0]]
+        raise DomainError(f"{what} {bad[0]} is ({x}, {y}): coordinates must be finite")
+    bad = np.flatnonzero((np.abs(out) > LARGEST).any(axis=1))
+    if len(bad):
+        x, y = out[bad[0]]
+        raise DomainError(
+            f"{what} {bad[0]} is ({x:g}, {y:g}): areas and squares of coordinates beyond "
+            f"{LARGEST:g} overflow; choose another unit of length"
+        )
+    return read_only(out)
+
+
+def checked_pairs(segments: ArrayLike, n_points: int) -> Ints:
+    """Pairs of point numbers, (k, 2), or a `DomainError`."""
+    raw = np.asarray(segments)
+    if raw.size == 0:
+        raise DomainError("no segments: say which points the boundary joins, e.g. Domain.polygon")
+    if raw.ndim != 2 or raw.shape[1] != 2:
+        raise DomainError(f"segments must be a (k, 2) array, not one of shape {raw.shape}")
+    if not np.issubdtype(raw.dtype, np.integer):
+        raise DomainError(f"segments must be integers, pairs of point numbers, not {raw.dtype}")
+    bad = np.flatnonzero(((raw < 0) | (raw >= n_points)).any(axis=1))
+    if len(bad):
+        i = bad[0]
+        raise DomainError(
+            f"segment {i} joins points {raw[i, 0]} and {raw[i, 1]}, but the points are numbered "
+            f"0 to {n_points - 1}"
+        )
+    return read_only(np.array(raw, dtype=np.int32, order="C"))
+
+
+def checked_segments(segments: ArrayLike, points: Floats) -> Ints:
+    """Pairs of different points, (k, 2), or a `DomainError`."""
+    out = checked_pairs(segments, len(points))
+    bad = np.flatnonzero((points[out[:, 0]] == points[out[:, 1]]).all(axis=1))
+    if len(bad):
+        i = bad[0]
+        x, y = points[out[i, 0]]
+        raise DomainError(
+            f"segment {i} has no length: its ends are both ({x:g}, {y:g}); remove it, {OR_REPAIR}"
+        )
+    return out
+
+
+def checked_regions(regions: Mapping[str, ArrayLike]) -> tuple[Mapping[str, int], Floats, Ints]:
+    numbers: dict[str, int] = {}
+    seeds, owners = [], []
+    for name, where in regions.items():
+        numbers[str(name)] = len(numbers) + 1
+        points = checked_points(np.atleast_2d(np.asarray(where)), f"region {name!r} point", least=1)
+        seeds.append(points)
+        owners += [numbers[str(name)]] * len(points)
+    all_seeds = np.concatenate(seeds) if seeds else np.empty((0, 2))
+    return MappingProxyType(numbers), read_only(all_seeds), read_only(np.array(owners, np.int32))
+
+
+def checked_names(
+    names: Mapping[str, Iterable[int]], n: int, what: str = "segment"
+) -> tuple[Mapping[str, int], Ints]:
+    """The tag of each name and of each of n segments (or curves), or a `DomainError`."""
+    numbers: dict[str, int] = {}
+    tags = np.zeros(n, np.int32)
+    for name, segments in names.items():
+        numbers[str(name)] = tag = len(numbers) + 1
+        for i in segments:
+            if not 0 <= i < n:
+                raise DomainError(
+                    f"name {name!r} is given to {what} {i}, but the {what}s are numbered "
+                    f"0 to {n - 1}"
+                )
+            if tags[i] not in (0, tag):
+                other = next(n for n, t in numbers.items() if t == tags[i])
+                raise DomainError(f"{what} {i} is named both {other!r} and {name!r}: choose one")
+            tags[i] = tag
+    return MappingProxyType(numbers), read_only(tags)
