@@ -32,6 +32,7 @@ from .plot import plot
 from .raw import Outline
 from .repair import Repair, Repairs, repair
 from .report import Report, measure
+from .simplify import Dropped, simplify
 from .solved import Solution
 from .stopping import Budget
 from .transfer import transfer
@@ -46,6 +47,7 @@ __all__ = [
     "BudgetError",
     "Domain",
     "DomainError",
+    "Dropped",
     "FormatError",
     "History",
     "Iteration",
@@ -74,6 +76,7 @@ __all__ = [
     "read_fields",
     "read_sol",
     "repair",
+    "simplify",
     "transfer",
     "validate",
     "write",

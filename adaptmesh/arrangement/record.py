@@ -73,14 +73,20 @@ class Repairs(Sequence[Repair]):
     def __getitem__(self, index: int | slice) -> Repair | tuple[Repair, ...]:
         return self.records[index]
 
-    def __str__(self) -> str:
-        if not self.records:
-            return f"nothing to repair (tolerance {self.tolerance:.3g})"
+    def _nothing(self) -> str:
+        return f"nothing to repair (tolerance {self.tolerance:.3g})"
+
+    def _heading(self) -> str:
         n = len(self)
-        lines = [
+        return (
             f"{n} repair{'s' if n > 1 else ''} (tolerance {self.tolerance:.3g}, "
             f"nothing moved farther than {self.displacement:.3g})"
-        ]
+        )
+
+    def __str__(self) -> str:
+        if not self.records:
+            return self._nothing()
+        lines = [self._heading()]
         for kind, count in self.counts.items():
             lines.append(f"  {kind}: {count}")
             these = [record for record in self.records if record.kind == kind]

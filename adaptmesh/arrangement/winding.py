@@ -28,7 +28,7 @@ def winding_numbers(faces: Faces, edge: Ints, sign: Ints, ring: Ints) -> list[di
         ring.
     """
     edge, ring, net = net_passes(edge, sign, ring)
-    order, before, through = _walk(faces)
+    order, before, through = walk(faces)
     numbers: list[dict[int, int]] = [{} for _ in range(faces.count)]
     start = np.searchsorted(edge, through)
     stop = np.searchsorted(edge, through, side="right")
@@ -53,7 +53,7 @@ def net_passes(edge: Ints, sign: Ints, ring: Ints) -> tuple[Ints, Ints, Ints]:
     return edge[start], ring[start], np.add.reduceat(sign, start)
 
 
-def _walk(faces: Faces) -> tuple[Ints, Ints, Ints]:
+def walk(faces: Faces) -> tuple[Ints, Ints, Ints]:
     """All faces but the outside in an order of visit; where from, and through which edge."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import breadth_first_order
