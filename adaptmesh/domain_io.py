@@ -1,18 +1,18 @@
-"""Domains from files: GeoJSON outlines, Triangle's .poly files, and the domains of meshes."""
+"""Domains from files: outlines, drawings, scripts, and the domains of meshes."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 from .coverage import domain_of_shapes
 from .domain import Domain
 from .errors import DomainError
-from .geojson import GEOJSON_SUFFIXES, read_geojson
+from .geo import read_geo
+from .geojson import read_geojson
 from .polyfile import read_poly
 from .raw import Outline, Shape
-
-OUTLINE_SUFFIXES = (*GEOJSON_SUFFIXES, ".poly")
 
 
 def read_domain(path: str | os.PathLike[str]) -> Domain:
@@ -26,6 +26,11 @@ def read_domain(path: str | os.PathLike[str]) -> Domain:
                        ``"a|b"`` after the regions beside them; other borders of a region bear its
                        name. Coordinates are taken as they are, in the plane: project longitudes
                        and latitudes first.
+    .svg               Paths and shapes (needs svgelements): lines, arcs and Bézier curves, with the
+                       id of their shape for a name; y turned over.
+    .dxf               Lines, arcs, ellipses, polylines and splines (needs ezdxf), with their layer
+                       for a name.
+    .geo               A Gmsh script: points, curves, plane surfaces, physical groups.
     .poly              Triangle's format, with holes; boundary markers other than 0 become names
                        of edges, and the attributes of region seeds become names of regions.
     anything else      A mesh that `adaptmesh.read` can read: its domain.
@@ -66,11 +71,8 @@ def read_raw(path: str | os.PathLike[str]) -> Domain | Outline | list[Shape]:
     path = Path(path)
     suffix = path.suffix.lower()
     try:
-        if suffix in GEOJSON_SUFFIXES:
-            return read_geojson(path)
-        if suffix == ".poly":
-            return read_poly(path)
-        return _domain_of_mesh_file(path)
+        reader = _READERS.get(suffix)
+        return _domain_of_mesh_file(path) if reader is None else reader(path)
     except DomainError as error:
         raise DomainError(f"{path}: {error}") from error
 
@@ -80,3 +82,28 @@ def _domain_of_mesh_file(path: Path) -> Domain:
 
     mesh = read(path)
     return Domain.of_mesh(mesh) if mesh.domain is None else mesh.domain
+
+
+def _domain_of_svg(path: Path) -> Domain:
+    from .drawings import read_svg
+
+    return read_svg(path).domain()
+
+
+def _domain_of_dxf(path: Path) -> Domain:
+    from .drawings import read_dxf
+
+    return read_dxf(path).domain()
+
+
+_READERS: dict[str, Callable[[Path], Domain | Outline | list[Shape]]] = {
+    ".geojson": read_geojson,
+    ".json": read_geojson,
+    ".poly": read_poly,
+    ".svg": _domain_of_svg,
+    ".dxf": _domain_of_dxf,
+    ".geo": read_geo,
+}
+
+OUTLINE_SUFFIXES = tuple(_READERS)
+"""Of files that hold a domain but no mesh."""

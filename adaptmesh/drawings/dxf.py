@@ -1,0 +1,177 @@
+"""DXF: drawings of CAD programs, read by ezdxf.
+
+Lines, arcs, circles, ellipses, polylines (with bulges) and splines of the model space become
+curves that bear the name of their layer; blocks are taken apart. Annotation (text, dimensions,
+hatches, ...) and lone points are no outlines and are passed over; any other entity is refused, as
+is what does not lie in a plane z = constant. Layers that are off or frozen count as not drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..curves import Arc, BSpline, Circle, Curve, EllipticArc, Line
+from ..errors import DomainError, FormatError
+from ..io.files import read_bytes
+from .drawing import Drawing
+
+Floats = NDArray[np.float64]
+
+_ANNOTATION = """
+TEXT MTEXT ATTRIB ATTDEF DIMENSION ARC_DIMENSION LARGE_RADIAL_DIMENSION LEADER MLEADER MULTILEADER
+TOLERANCE HATCH MPOLYGON WIPEOUT IMAGE VIEWPORT POINT XLINE RAY LIGHT SUN ACAD_TABLE UNDERLAY
+PDFUNDERLAY DWFUNDERLAY DGNUNDERLAY OLE2FRAME ACAD_PROXY_ENTITY
+"""
+
+PASSED_OVER = frozenset(_ANNOTATION.split())
+"""Kinds of entities that are no outlines."""
+
+
+def read_dxf(path: Path) -> Drawing:
+    """The curves of the model space of a DXF file, each with the name of its layer."""
+    document = _opened(path)
+    from ezdxf.disassemble import recursive_decompose
+
+    drawing = Drawing(path)
+    hidden = {layer.dxf.name for layer in document.layers if layer.is_off() or layer.is_frozen()}
+    for entity in recursive_decompose(document.modelspace()):
+        if entity.dxftype() in PASSED_OVER or entity.dxf.layer in hidden:
+            continue
+        try:
+            for curve in _curves(entity):
+                drawing.add(curve, entity.dxf.layer)
+        except DomainError as error:
+            raise DomainError(f"{_words(entity)}: {error}") from None
+        except FormatError as error:
+            raise FormatError(f"{path}: {_words(entity)} {error}") from None
+    return drawing
+
+
+def _opened(path: Path) -> Any:
+    try:
+        import ezdxf
+        from ezdxf.lldxf.const import DXFError
+    except ImportError:
+        raise FormatError('DXF is read by ezdxf: pip install "adaptmesh-metric[files]"') from None
+    if not read_bytes(path).rstrip(b"\0\r\n ").endswith(b"EOF"):  # ezdxf takes what there is
+        raise FormatError(f"{path} does not end with EOF: it is cut short, or no DXF file")
+    try:
+        return ezdxf.readfile(path)
+    except (DXFError, OSError, ValueError, TypeError, LookupError, AttributeError) as error:
+        raise FormatError(f"{path} is damaged, or no DXF file: {error}") from None
+
+
+def _words(entity: Any) -> str:
+    handle = entity.dxf.get("handle")
+    return (
+        f"{entity.dxftype()} {'' if handle is None else handle + ' '}on layer {entity.dxf.layer!r}"
+    )
+
+
+def _curves(entity: Any) -> Iterator[Curve]:
+    from ezdxf.upright import upright
+
+    reader = _READERS.get(entity.dxftype())
+    if reader is None:
+        known = ", ".join(_READERS)
+        raise FormatError(f"cannot be read; entities that can are {known}: explode or remove it")
+    upright_copy = entity.copy()
+    upright(upright_copy)  # drawn from below: the same lines with the normal (0, 0, 1)
+    normal = upright_copy.dxf.get("extrusion", (0, 0, 1))
+    if not np.allclose(tuple(normal), (0, 0, 1)):
+        raise FormatError(f"lies in a tilted plane, with the normal {tuple(normal)}")
+    yield from reader(upright_copy)
+
+
+def _line(entity: Any) -> Iterator[Curve]:
+    a, b = _flat([entity.dxf.start, entity.dxf.end])
+    if (a != b).any():
+        yield Line(a, b)
+
+
+def _arc(entity: Any) -> Iterator[Curve]:
+    (centre,) = _flat([entity.dxf.center])
+    start, end = np.radians([entity.dxf.start_angle, entity.dxf.end_angle])
+    yield Arc(centre, entity.dxf.radius, start, _after(start, end))
+
+
+def _circle(entity: Any) -> Iterator[Curve]:
+    (centre,) = _flat([entity.dxf.center])
+    yield Circle(centre, entity.dxf.radius)
+
+
+def _ellipse(entity: Any) -> Iterator[Curve]:
+    centre, axis = _flat([entity.dxf.center, entity.dxf.major_axis])
+    a = float(np.hypot(*axis))
+    start, end = entity.dxf.start_param, _after(entity.dxf.start_param, entity.dxf.end_param)
+    rotation = float(np.arctan2(axis[1], axis[0]))
+    yield EllipticArc(centre, (a, a * entity.dxf.ratio), rotation, start, end)
+
+
+def _after(start: float, end: float) -> float:
+    """The end angle as the first one above the start; DXF's arcs run anticlockwise."""
+    turn = (end - start) % (2 * np.pi)
+    return float(start + (turn if turn > 1e-12 else 2 * np.pi))
+
+
+def _lwpolyline(entity: Any) -> Iterator[Curve]:
+    rows = np.array([(x, y, bulge) for x, y, _, _, bulge in entity.get_points()], float)
+    yield from _bulged(rows, entity.closed)
+
+
+def _polyline(entity: Any) -> Iterator[Curve]:
+    if not entity.is_2d_polyline and not entity.is_3d_polyline:
+        raise FormatError("is a mesh, not a polyline")
+    vertices = list(entity.vertices)
+    points = _flat([v.dxf.location for v in vertices])
+    bulges = [v.dxf.get("bulge", 0.0) for v in vertices]
+    yield from _bulged(np.column_stack([points, bulges]), entity.is_closed)
+
+
+def _bulged(rows: Floats, closed: bool) -> Iterator[Curve]:
+    """Lines and arcs from vertex to vertex; a bulge is the tangent of a quarter of the turn."""
+    following = np.roll(rows, -1, axis=0)
+    for (x0, y0, bulge), (x1, y1, _) in list(zip(rows, following, strict=True))[
+        : None if closed else -1
+    ]:
+        a, b = np.array([x0, y0]), np.array([x1, y1])
+        if (a == b).all():
+            continue
+        if bulge == 0:
+            yield Line(a, b)
+            continue
+        # The top of the arc: from the middle of the chord, to its right, by bulge times half of it.
+        half = (b - a) / 2
+        yield Arc.through(a, (a + b) / 2 + bulge * np.array([half[1], -half[0]]), b)
+
+
+def _spline(entity: Any) -> Iterator[Curve]:
+    tool = entity.construction_tool()
+    control = _flat(tool.control_points)
+    weights = np.array(tool.weights(), float) if len(tool.weights()) else None
+    yield BSpline(control, tool.degree, np.array(tool.knots(), float), weights)
+
+
+def _flat(points: Any) -> Floats:
+    """x and y of points in one plane z = constant."""
+    xyz = np.array([tuple(p) + (0.0,) * (3 - len(tuple(p))) for p in points], float).reshape(-1, 3)
+    if np.ptp(xyz[:, 2]) > 0:
+        raise FormatError("does not lie in a plane z = constant")
+    out: Floats = xyz[:, :2]
+    return out
+
+
+_READERS = {
+    "LINE": _line,
+    "ARC": _arc,
+    "CIRCLE": _circle,
+    "ELLIPSE": _ellipse,
+    "LWPOLYLINE": _lwpolyline,
+    "POLYLINE": _polyline,
+    "SPLINE": _spline,
+}

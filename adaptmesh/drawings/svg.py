@@ -1,0 +1,136 @@
+"""SVG: paths and shapes of vector graphics, read by svgelements.
+
+Every path, line, polyline, polygon, rectangle, circle and ellipse becomes curves, with all
+transformations applied: straight lines, arcs of ellipses and Bézier curves, exactly. In SVG y
+points down; here it is turned over, so that what is up in the picture is up. Lengths are in the
+units of the picture's pixels. Text and images are no outlines and are passed over, and so is what
+only styles or clips.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..curves import Bezier, Curve, Line
+from ..errors import DomainError, FormatError
+from .drawing import Drawing, affine_arc
+
+Floats = NDArray[np.float64]
+
+_ROUNDING = 1e-14  # what arcs leave of a gap that `Z` then closes, as a share of coordinates
+_LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
+
+
+def read_svg(path: Path) -> Drawing:
+    """The curves of an SVG file; each bears the label (as Inkscape gives it) or id of its shape."""
+    svg = _import_svgelements()
+    drawing = Drawing(path)
+    for shape in _parsed(svg, path).elements():
+        if not isinstance(shape, svg.Shape):
+            continue
+        name = _name_of(shape)
+        place = _Placement(shape.transform)
+        for segment in shape.segments(transformed=False):
+            try:
+                curve = _curve(svg, segment, place)
+            except DomainError as error:
+                raise DomainError(f"shape {name or type(shape).__name__!r}: {error}") from None
+            if curve is not None:
+                drawing.add(curve, name)
+    return drawing
+
+
+def _parsed(svg: Any, path: Path) -> Any:
+    from xml.etree.ElementTree import ParseError
+
+    try:
+        root = svg.SVG.parse(str(path), reify=False)
+    except FileNotFoundError:
+        raise FormatError(f"{path}: no such file") from None
+    except OSError as error:
+        raise FormatError(f"{path} cannot be read: {error.strerror or error}") from None
+    except ParseError as error:
+        raise FormatError(f"{path} is cut short or not XML: {error}") from None
+    except (
+        ValueError,
+        TypeError,
+        KeyError,
+        IndexError,
+        AttributeError,
+        ZeroDivisionError,
+    ) as error:
+        raise FormatError(f"{path} is no SVG that svgelements can read: {error}") from None
+    if not isinstance(root, svg.SVG):
+        raise FormatError(f"{path} is XML, but not SVG")
+    return root
+
+
+def _name_of(shape: Any) -> str | None:
+    """Its own label or id; svgelements hands labels of groups down in `values`."""
+    attributes = shape.values.get("attributes", {}) if shape.values else {}
+    name = attributes.get(_LABEL) or shape.id
+    return None if name is None else str(name)
+
+
+class _Placement:
+    """Where points of a shape come to lie: its transformation, and y turned over."""
+
+    def __init__(self, matrix: Any) -> None:
+        a, b, c, d, e, f = (
+            float(v) for v in (matrix.a, matrix.b, matrix.c, matrix.d, matrix.e, matrix.f)
+        )
+        self._linear = np.array([[a, c], [-b, -d]])
+        self._shift = np.array([e, -f])
+
+    def point(self, p: Any) -> Floats:
+        out: Floats = self._linear @ [float(p.x), float(p.y)] + self._shift
+        return out
+
+    def vector(self, p: Any, origin: Any) -> Floats:
+        out: Floats = self._linear @ [float(p.x) - float(origin.x), float(p.y) - float(origin.y)]
+        return out
+
+
+def _curve(svg: Any, segment: Any, place: _Placement) -> Curve | None:
+    """None for a move, and for what has no length."""
+    if isinstance(segment, svg.Move) or segment.start is None or segment.end is None:
+        return None
+    points = [place.point(p) for p in _control_points(svg, segment)]
+    if isinstance(segment, svg.Arc):
+        if segment.rx == 0 or segment.ry == 0 or segment.sweep == 0:
+            return None if (points[0] == points[-1]).all() else Line(points[0], points[-1])
+        return affine_arc(
+            place.point(segment.center),
+            place.vector(segment.prx, segment.center),
+            place.vector(segment.pry, segment.center),
+            float(segment.get_start_t()),
+            float(segment.sweep),
+        )
+    if np.ptp(points, axis=0).max() <= _ROUNDING * np.abs(points).max():
+        return None
+    return Line(*points) if len(points) == 2 else Bezier(points)
+
+
+def _control_points(svg: Any, segment: Any) -> Iterator[Any]:
+    yield segment.start
+    if isinstance(segment, svg.CubicBezier):
+        yield segment.control1
+        yield segment.control2
+    elif isinstance(segment, svg.QuadraticBezier):
+        yield segment.control
+    yield segment.end
+
+
+def _import_svgelements() -> Any:
+    try:
+        import svgelements
+    except ImportError:
+        raise FormatError(
+            'SVG is read by svgelements: pip install "adaptmesh-metric[files]"'
+        ) from None
+    return svgelements

@@ -1,0 +1,265 @@
+"""Numbers and lists in .geo scripts: tokens, and expressions of them. Parsed, never executed.
+
+In order of precedence, weakest first::
+
+    list        item, item, ...        an item is an expression, a range a:b or a:b:step,
+                                       {list}, name[], -{list}
+    expression  a ? b : c   ||  &&  == !=  < > <= >=  + -  * / %  - !  ^  number, name, name[i],
+                                       #name[], function(...), (expression)
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from ..errors import FormatError
+
+_TOKEN = re.compile(
+    r"""
+    (?P<skip>\s+ | //[^\n]* | /\*.*?\*/)
+  | (?P<number>(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?)
+  | (?P<string>"[^"\n]*" | '[^'\n]*')
+  | (?P<name>[A-Za-z_]\w*(?:\.[A-Za-z]\w*)*)
+  | (?P<sign>\+= | -= | \*= | /= | == | != | <= | >= | && | \|\| | [-+*/%^!?:;,=<>(){}\[\]\#~.])
+    """,
+    re.VERBOSE | re.DOTALL,
+)
+
+MOST_ITEMS = 10_000_000
+"""Numbers of one list: a range that would have more is a mistake."""
+
+FUNCTIONS: dict[str, Callable[..., float]] = {
+    "Acos": math.acos, "ArcCos": math.acos, "Asin": math.asin, "ArcSin": math.asin,
+    "Atan": math.atan, "ArcTan": math.atan, "Atan2": math.atan2, "ArcTan2": math.atan2,
+    "Ceil": math.ceil, "Cos": math.cos, "Cosh": math.cosh, "Exp": math.exp, "Fabs": math.fabs,
+    "Abs": math.fabs, "Floor": math.floor, "Fmod": math.fmod, "Modulo": math.fmod,
+    "Hypot": math.hypot, "Log": math.log, "Log10": math.log10, "Max": max, "Min": min,
+    "Round": round, "Sin": math.sin, "Sinh": math.sinh, "Sqrt": math.sqrt, "Tan": math.tan,
+    "Tanh": math.tanh,
+}  # fmt: skip
+
+_BINARY: list[dict[str, Callable[[float, float], float]]] = [
+    {"||": lambda a, b: float(bool(a or b))},
+    {"&&": lambda a, b: float(bool(a and b))},
+    {"==": operator.eq, "!=": operator.ne},
+    {"<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge},
+    {"+": operator.add, "-": operator.sub},
+    {"*": operator.mul, "/": operator.truediv, "%": math.fmod},
+]
+
+_NEW = {
+    "newp": ("Point",),
+    "newl": ("Curve",),
+    "newc": ("Curve",),
+    "newll": ("Curve Loop",),
+    "newcl": ("Curve Loop",),
+    "news": ("Surface",),
+    "newreg": ("Curve", "Curve Loop", "Surface", "Physical"),
+}
+
+
+@dataclass(frozen=True)
+class Token:
+    kind: str  # number, string, name, sign, or end
+    text: str
+    line: int
+
+
+def tokens_of(text: str) -> list[Token]:
+    """All tokens of a script, and one of kind "end"."""
+    out, at, line = [], 0, 1
+    while at < len(text):
+        match = _TOKEN.match(text, at)
+        if match is None:
+            raise FormatError(f"line {line}: {text[at : at + 20].split()[0]!r} cannot be read")
+        kind, found = str(match.lastgroup), match.group()
+        if kind != "skip":
+            out.append(Token(kind, found, line))
+        line += found.count("\n")
+        at = match.end()
+    out.append(Token("end", "the end of the file", line))
+    return out
+
+
+class Variables:
+    """Numbers and lists by name, and the largest number used of each kind of entity."""
+
+    def __init__(self) -> None:
+        self.values: dict[str, list[float]] = {"Pi": [math.pi]}
+        self.largest: dict[str, int] = {}
+
+    def used(self, kind: str, number: int) -> None:
+        self.largest[kind] = max(number, self.largest.get(kind, 0))
+
+    def new(self, name: str) -> float:
+        return 1.0 + max(self.largest.get(kind, 0) for kind in _NEW[name])
+
+
+class Reader:
+    """Takes tokens from the front, and evaluates expressions on the way."""
+
+    def __init__(self, tokens: list[Token], variables: Variables) -> None:
+        self.tokens, self.variables = tokens, variables
+        self.at = 0
+
+    # -- tokens
+
+    @property
+    def token(self) -> Token:
+        return self.tokens[self.at]
+
+    def next(self) -> Token:
+        token = self.token
+        self.at = min(self.at + 1, len(self.tokens) - 1)
+        return token
+
+    def has(self, *texts: str) -> bool:
+        return self.token.kind != "string" and self.token.text in texts
+
+    def accept(self, *texts: str) -> Token | None:
+        return self.next() if self.has(*texts) else None
+
+    def expect(self, *texts: str) -> Token:
+        if not self.has(*texts):
+            wanted = " or ".join(map(repr, texts))
+            raise self.error(f"{wanted} was expected, not {self.token.text!r}")
+        return self.next()
+
+    def error(self, message: str) -> FormatError:
+        return FormatError(f"line {self.token.line}: {message}")
+
+    # -- lists
+
+    def braced(self) -> list[float]:
+        """{ list }"""
+        opening = self.expect("{", "[", "(").text
+        closing = {"{": "}", "[": "]", "(": ")"}[opening]
+        out = [] if self.has(closing) else self.listed()
+        self.expect(closing)
+        return out
+
+    def listed(self) -> list[float]:
+        out = list(self._item())
+        while self.accept(","):
+            out += self._item()
+        return out
+
+    def _item(self) -> Iterator[float]:
+        negative = self.has("-") and self.tokens[self.at + 1].text == "{"
+        if negative:
+            self.next()
+        if self.has("{"):
+            yield from (-x if negative else x for x in self.braced())
+            return
+        if self._is_whole_list():
+            name = self.next().text
+            self.at += 2
+            yield from self.look_up(name)
+            return
+        first = self.number()
+        if not self.accept(":"):
+            yield first
+            return
+        last = self.number()
+        step = self.number() if self.accept(":") else math.copysign(1.0, last - first)
+        yield from self._range(first, last, step)
+
+    def _is_whole_list(self) -> bool:
+        texts = [t.text for t in self.tokens[self.at + 1 : self.at + 3]]
+        return self.token.kind == "name" and texts in (["[", "]"], ["(", ")"], ["{", "}"])
+
+    def _range(self, first: float, last: float, step: float) -> Iterator[float]:
+        if step == 0 or not math.isfinite((last - first) / step):
+            raise self.error(f"the range {first:g}:{last:g}:{step:g} has no end")
+        count = math.floor((last - first) / step + 1e-9) + 1
+        if count > MOST_ITEMS:
+            raise self.error(f"the range {first:g}:{last:g}:{step:g} has {count:.3g} numbers")
+        for k in range(count):
+            yield first + k * step
+
+    # -- numbers
+
+    def number(self) -> float:
+        """An expression with one value."""
+        line = self.token.line
+        try:
+            value = float(self._ternary())
+        except (ArithmeticError, ValueError) as error:
+            raise FormatError(f"line {line}: {error}") from None
+        if not math.isfinite(value):
+            raise FormatError(f"line {line}: {value} is not a number to go on with")
+        return value
+
+    def whole(self, what: str) -> int:
+        value = self.number()
+        if value != int(value):
+            raise self.error(f"{what} is {value:g}, not a whole number")
+        return int(value)
+
+    def _ternary(self) -> float:
+        condition = self._binary(0)
+        if not self.accept("?"):
+            return condition
+        first = self._ternary()
+        self.expect(":")
+        second = self._ternary()
+        return first if condition else second
+
+    def _binary(self, level: int) -> float:
+        if level == len(_BINARY):
+            return self._unary()
+        left = self._binary(level + 1)
+        while sign := self.accept(*_BINARY[level]):
+            left = float(_BINARY[level][sign.text](left, self._binary(level + 1)))
+        return left
+
+    def _unary(self) -> float:
+        signs = []
+        while sign := self.accept("-", "+", "!"):
+            signs.append(sign.text)
+        value = self._atom()
+        if self.accept("^"):
+            value = float(value ** self._unary())
+        for text in reversed(signs):
+            value = {"-": -value, "+": value, "!": float(not value)}[text]
+        return value
+
+    def _atom(self) -> float:
+        if self.accept("("):
+            value = self.number()
+            self.expect(")")
+            return value
+        if self.accept("#"):
+            name = self.next().text
+            self.expect("[", "(")
+            self.expect("]", ")")
+            return float(len(self.look_up(name)))
+        token = self.next()
+        if token.kind == "number":
+            return float(token.text.lower().replace("d", "e"))
+        if token.kind != "name":
+            self.at -= 1
+            raise self.error(f"a number was expected, not {token.text!r}")
+        if token.text in _NEW:
+            return self.variables.new(token.text)
+        if token.text in FUNCTIONS and self.has("(", "["):
+            return float(FUNCTIONS[token.text](*self.braced()))
+        values = self.look_up(token.text)
+        if self.has("[", "("):
+            (index,) = self.braced() or [0.0]
+            if not 0 <= index < len(values) or index != int(index):
+                raise self.error(f"{token.text} has no element {index:g}, only {len(values)}")
+            return values[int(index)]
+        if len(values) != 1:
+            raise self.error(f"{token.text} is a list of {len(values)}; a number was expected")
+        return values[0]
+
+    def look_up(self, name: str) -> list[float]:
+        values = self.variables.values.get(name)
+        if values is None:
+            raise self.error(f"{name!r} is neither a variable nor a function that can be read")
+        return values
