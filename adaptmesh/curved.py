@@ -85,8 +85,27 @@ class Curved:
             p = line.point(at.ravel()) - line.point(u[k, :1])
             d = line.derivative(at.ravel())
             cross = (p[:, 0] * d[:, 1] - p[:, 1] * d[:, 0]).reshape(at.shape)
-            out[k] = 0.5 * (cross @ w) @ du
+            out[k] = 0.5 * (cross @ w) @ du + _area_of_gaps(line, ends)
         return out
+
+
+def _area_of_gaps(line: Run, ends: Floats) -> float:
+    """What joining adds to the area beside a chord: the vertices may lie off the ends of curves.
+
+    ::
+
+          vertex          the way from vertex to vertex, as seen from the first, jumps where it
+            |             comes onto a curve, from one curve to the next, and off the last
+            '-- curve
+    """
+    part = np.floor(0.5 * (ends[:-1] + ends[1:])).astype(np.intp)
+    onto, off = (
+        np.array([line.parts[k].point(u - k)[0] for k, u in zip(part, at, strict=True)])
+        for at in (ends[:-1], ends[1:])
+    )
+    first, last = line.point(ends[[0, -1]])
+    p, q = np.vstack([first, off]) - first, np.vstack([onto, last]) - first
+    return float(0.5 * np.sum(p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]))
 
 
 class Skeleton(NamedTuple):
