@@ -69,8 +69,8 @@ OutlineFile = Annotated[
         metavar="DOMAIN",
         exists=True,
         dir_okay=False,
-        help="What to mesh: polygons (.geojson .json), Triangle's .poly, or a mesh "
-        "(.msh .mesh .vtu ...) whose domain is meshed anew.",
+        help="What to mesh: polygons (.geojson .wkt .shp), drawings (.svg .dxf), Triangle's .poly, "
+        "Gmsh's .geo, or a mesh (.msh .mesh .vtu ...) whose domain is meshed anew.",
     ),
 ]
 Size = Annotated[str | None, typer.Option("--size", "-s", metavar="EXPR", help=SIZE_HELP)]

@@ -1,4 +1,4 @@
-"""Domains from files: outlines, drawings, scripts, and the domains of meshes."""
+"""Domains from files: polygons, outlines, drawings, scripts, and the domains of meshes."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from .geo import read_geo
 from .geojson import read_geojson
 from .polyfile import read_poly
 from .raw import Outline, Shape
+from .shp import read_shapefile
+from .wkt import read_wkt
 
 
 def read_domain(path: str | os.PathLike[str]) -> Domain:
@@ -26,6 +28,9 @@ def read_domain(path: str | os.PathLike[str]) -> Domain:
                        ``"a|b"`` after the regions beside them; other borders of a region bear its
                        name. Coordinates are taken as they are, in the plane: project longitudes
                        and latitudes first.
+    .wkt               As GeoJSON, without names.
+    .shp               A shapefile (needs pyshp): as GeoJSON, the attribute ``name`` being in the
+                       ``.dbf`` beside it.
     .svg               Paths and shapes (needs svgelements): lines, arcs and Bézier curves, with the
                        id of their shape for a name; y turned over.
     .dxf               Lines, arcs, ellipses, polylines and splines (needs ezdxf), with their layer
@@ -99,6 +104,8 @@ def _domain_of_dxf(path: Path) -> Domain:
 _READERS: dict[str, Callable[[Path], Domain | Outline | list[Shape]]] = {
     ".geojson": read_geojson,
     ".json": read_geojson,
+    ".wkt": read_wkt,
+    ".shp": read_shapefile,
     ".poly": read_poly,
     ".svg": _domain_of_svg,
     ".dxf": _domain_of_dxf,

@@ -11,6 +11,7 @@ from typing import Any
 from .convert import to_shapely
 from .domain import Domain
 from .errors import DomainError, FormatError
+from .io.files import read_text, replace_files
 from .raw import Shape
 
 GEOJSON_SUFFIXES = (".geojson", ".json")
@@ -19,18 +20,12 @@ GEOJSON_SUFFIXES = (".geojson", ".json")
 def read_geojson(path: Path) -> list[Shape]:
     """The polygons of a file, unchecked; a `FormatError` names the file."""
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise FormatError(f"{path}: no such file") from error
-    except UnicodeDecodeError as error:
-        raise FormatError(f"{path} is not a text file: {error}") from error
+        content = json.loads(read_text(path))
     except json.JSONDecodeError as error:
         raise FormatError(
             f"{path} is not valid JSON at line {error.lineno}, column {error.colno} "
             f"({error.msg}): is the file complete?"
         ) from error
-    except OSError as error:
-        raise FormatError(f"{path} cannot be read: {error.strerror}") from error
     if not isinstance(content, dict) or "type" not in content:
         raise FormatError(f"{path} is JSON but not GeoJSON: its outermost object has no 'type'")
     try:
@@ -46,8 +41,6 @@ def write_geojson(path: str | os.PathLike[str], domain: Domain) -> None:
     are written with all their digits.
     """
     import shapely
-
-    from .io.files import replace_files
 
     features = [
         {

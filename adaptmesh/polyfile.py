@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import FormatError
+from .io.files import read_text
 from .raw import Outline
 
 Floats = NDArray[np.float64]
@@ -35,15 +36,7 @@ class _Lines:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        try:
-            text = path.read_text(encoding="utf-8")
-        except FileNotFoundError as error:
-            raise FormatError(f"{path}: no such file") from error
-        except UnicodeDecodeError as error:
-            raise FormatError(f"{path} is not a text file: {error}") from error
-        except OSError as error:
-            raise FormatError(f"{path} cannot be read: {error.strerror}") from error
-        stripped = (line.partition("#")[0].split() for line in text.splitlines())
+        stripped = (line.partition("#")[0].split() for line in read_text(path).splitlines())
         self._numbered: Iterator[tuple[int, list[str]]] = (
             (number, words) for number, words in enumerate(stripped, 1) if words
         )

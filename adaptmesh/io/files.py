@@ -22,6 +22,14 @@ def read_bytes(path: Path) -> bytes:
         raise FormatError(f"{path}: cannot be read: {error.strerror or error}") from None
 
 
+def read_text(path: Path) -> str:
+    """Everything that a text file holds; UTF-8, with or without a mark in front."""
+    try:
+        return read_bytes(path).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise FormatError(f"{path}: is not a text file: {error}") from None
+
+
 def replace_files(contents: Mapping[Path, bytes]) -> None:
     """Write each file whole or not at all.
 
