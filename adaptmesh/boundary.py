@@ -11,7 +11,7 @@ from metrics import ControlSpace
 
 from . import _core
 from .chords import Chords, Surroundings, chords_along
-from .curve_cuts import unit_cuts
+from .curve_cuts import equal_shares, measure_runs
 from .domain import Domain
 from .errors import BudgetError
 from .spans import spans_of
@@ -30,6 +30,10 @@ MOST_CHORDS = 8_000_000
 
 # By how much a curve may turn along an edge of a mesh, in degrees: a circle gets at least six.
 TURN = 60.0
+
+# A run with a chord longer than this is cut anew, up to so many times.
+LONG_CHORD = 1.3
+RECUTS = 4
 
 
 @dataclass(frozen=True)
@@ -163,12 +167,10 @@ def _cut_runs(
     curved = domain.curved
     on_run = curved.segment_runs >= 0
     run, u = curved.segment_runs[on_run], curved.segment_parameters[on_run]
-    d = np.diff(domain.points[domain.segments[on_run]], axis=1)[:, 0]
-    cross = d[:-1, 0] * d[1:, 1] - d[:-1, 1] * d[1:, 0]
-    turn = np.abs(np.arctan2(cross, (d[:-1] * d[1:]).sum(axis=1)))
-    turns = np.bincount(run[1:], turn * (np.diff(run) == 0), minlength=len(curved.runs))
+    turns = _turns(run, np.diff(domain.points[domain.segments[on_run]], axis=1)[:, 0])
     least = np.maximum(1, np.ceil(turns / np.radians(TURN))).astype(int)
-    cuts = unit_cuts(curved.runs, run, u, field, least, most_points)
+    measured = measure_runs(curved.runs, run, u, field, most_points)
+    cuts = measured.unit_cuts(least)
     around = Surroundings(
         np.concatenate([straight.points, domain.holes, domain.seeds]),
         len(straight.points),
@@ -176,7 +178,50 @@ def _cut_runs(
         curved.segment_curves[straight.piece_segments],
         curved.curves,
     )
-    return chords_along(curved.runs, cuts, TURN, around), around
+    for _ in range(RECUTS):
+        chords = chords_along(curved.runs, cuts, TURN, around)
+        straight_length = _straight_lengths(chords, field, most_points)
+        if (straight_length <= LONG_CHORD).all():
+            break
+        along = measured.lengths_between(chords.run, chords.u)
+        cuts = _recut(chords, cuts, along, straight_length)
+    else:
+        chords = chords_along(curved.runs, cuts, TURN, around)
+    return chords, around
+
+
+def _turns(run: Ints, d: Floats) -> Floats:
+    """By what angle each run turns, from the vectors of chords that are close to it."""
+    cross = d[:-1, 0] * d[1:, 1] - d[:-1, 1] * d[1:, 0]
+    turn = np.abs(np.arctan2(cross, (d[:-1] * d[1:]).sum(axis=1)))
+    weights = np.where(np.diff(run) == 0, turn, 0.0)
+    out: Floats = np.bincount(run[1:], weights, minlength=int(run.max()) + 1).astype(np.float64)
+    return out
+
+
+def _straight_lengths(chords: Chords, field: ControlSpace, most_points: int) -> Floats:
+    tensors = field(chords.points)
+    a, b = chords.ends.T
+    sampler = _core.edge_sampler(
+        chords.points[a], tensors[a], chords.points[b], tensors[b], LONGEST_CHORD
+    )
+    return measure_edges(sampler, field, most_points)
+
+
+def _recut(chords: Chords, cuts: list[Floats], along: Floats, straight: Floats) -> list[Floats]:
+    """Cuts of runs that have chords that are too long, so close that these become unit.
+
+    A chord whose ends lie across a thin layer, not along it, is longer in the metric than its
+    curve. Of its length l the part t along the curve goes with the number m of pieces that it is
+    cut into, and the rest with m^2, as the turn does: 1 = (t / m)^2 + (l^2 - t^2) / m^4.
+    """
+    rest = np.maximum(straight**2 - along**2, 0)
+    demand = np.sqrt(0.5 * (along**2 + np.sqrt(along**4 + 4 * rest)))
+    out = list(cuts)
+    for r in np.unique(chords.run[straight > LONG_CHORD]):
+        mine = chords.run == r
+        out[r] = equal_shares(chords.u[mine], demand[mine])
+    return out
 
 
 def _with_spans(

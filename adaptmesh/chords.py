@@ -203,6 +203,9 @@ class _Refinement:
         """Refuse what more chords do not mend."""
         stuck = self.u[bad, 1] - self.u[bad, 0] < SHORTEST * np.maximum(1, self.u[bad, 1])
         stuck |= (self.height[bad] <= ROUNDING * self.extent) & ~(self.turn[bad] > 1e-3)
+        chord, vertex = self.beside
+        same = self.points[self.ends[chord]] == self._all_points()[vertex][:, None]
+        stuck |= np.isin(bad, chord[same.all(axis=2).any(axis=1)])
         if len(self.u) > most:
             stuck[:] = True
         if stuck.any():

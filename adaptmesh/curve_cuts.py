@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -32,15 +33,61 @@ LONGEST_FINE_CHORD = 4.0
 DEEPEST = 45
 
 
-def unit_cuts(
-    runs: Sequence[Run],
-    run: Index,
-    u: Floats,
-    field: ControlSpace,
-    least_parts: Index,
-    most_points: int,
-) -> list[Floats]:
-    """Parameters that cut each run into parts of (nearly) unit metric length.
+@dataclass(frozen=True)
+class Measured:
+    """Runs in chords so short that their metric lengths are trusted, in order along each run.
+
+    Attributes
+    ----------
+    run : (k,) array of int
+        The run of each chord.
+    u : (k, 2) array
+        The parameters of its ends.
+    length : (k,) array
+        Its metric length.
+    speeds : (k, 2) array
+        Its length in the metrics of both ends.
+    first : (r + 1,) array of int
+        The first chord of each run.
+    """
+
+    run: Index
+    u: Floats
+    length: Floats
+    speeds: Floats
+    first: Index
+
+    def unit_cuts(self, least_parts: Index) -> list[Floats]:
+        """Parameters that cut each run into parts of (nearly) unit length, at least so many.
+
+        Ascending, with both ends. The parts are equal in metric length along the curve.
+        """
+        return [
+            _equal_shares(self.u[i:j], self.length[i:j], self.speeds[i:j], int(least))
+            for (i, j), least in zip(itertools.pairwise(self.first), least_parts, strict=True)
+        ]
+
+    def lengths_between(self, run: Index, u: Floats) -> Floats:
+        """Metric lengths of parts of runs (k,) between parameters (k, 2), along the curve."""
+        out = np.empty(len(run))
+        for r in np.unique(run):
+            i, j = self.first[r], self.first[r + 1]
+            known = np.concatenate([self.u[i:j, 0], self.u[j - 1 : j, 1]])
+            total = np.concatenate([[0.0], np.cumsum(self.length[i:j])])
+            mine = run == r
+            out[mine] = np.diff(np.interp(u[mine], known, total), axis=1)[:, 0]
+        return out
+
+
+def equal_shares(u: Floats, demand: Floats) -> Floats:
+    """Parameters, with both ends, at equal shares of a demand given for each of some intervals."""
+    return _equal_shares(u, demand, np.ones((len(u), 2)), 1)
+
+
+def measure_runs(
+    runs: Sequence[Run], run: Index, u: Floats, field: ControlSpace, most_points: int
+) -> Measured:
+    """Measure runs along their curves.
 
     Parameters
     ----------
@@ -49,28 +96,9 @@ def unit_cuts(
     u : (k, 2) array
         Chords that cover the runs, to begin with.
     field : ControlSpace
-    least_parts : (r,) array of int
-        Of each run.
     most_points : int
-        More cuts than this are refused.
-
-    Returns
-    -------
-    list of (m,) arrays
-        Of each run, ascending, with both ends.
+        A boundary of many more unit parts than this is refused.
     """
-    run, u, length, speeds = _measured(runs, run, u, field, most_points)
-    first = np.searchsorted(run, np.arange(len(runs) + 1))
-    return [
-        _equal_shares(u[i:j], length[i:j], speeds[i:j], int(least))
-        for (i, j), least in zip(itertools.pairwise(first), least_parts, strict=True)
-    ]
-
-
-def _measured(
-    runs: Sequence[Run], run: Index, u: Floats, field: ControlSpace, most_points: int
-) -> tuple[Index, Floats, Floats, Floats]:
-    """Chords short enough to be trusted, in order: run, parameters, length, speeds at the ends."""
     places = points_on(runs, np.repeat(run, 2), u.ravel())
     tensors = field(places)
     chord = np.arange(2 * len(run)).reshape(-1, 2)  # its ends, by place
@@ -102,7 +130,9 @@ def _measured(
     order = np.lexsort((u[:, 0], run))
     vectors = places[chord[:, 1]] - places[chord[:, 0]]
     speeds = np.stack([lengths(m, m, vectors) for m in (tensors[chord[:, i]] for i in (0, 1))], 1)
-    return run[order], u[order], length[order], speeds[order]
+    run = run[order]
+    first = np.searchsorted(run, np.arange(len(runs) + 1))
+    return Measured(run, u[order], length[order], speeds[order], first)
 
 
 def _lengths(places: Floats, tensors: Floats, chord: Index) -> Floats:
