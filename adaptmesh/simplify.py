@@ -17,6 +17,7 @@ from .domain import Domain
 from .errors import DomainError
 from .loops import small_loops
 from .outline import regions_beside
+from .raw import refuse_curves
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -93,6 +94,7 @@ def simplify(
     """
     if not isinstance(domain, Domain):
         raise DomainError(f"a Domain is wanted, not {type(domain).__name__}: see adaptmesh.repair")
+    refuse_curves(domain, "simplify")
     for name, value in (("share", share), ("loops_below", loops_below)):
         if not 0 <= value < np.inf:
             raise ValueError(f"{name}={value!r}: a number of sizes is wanted, from 0")

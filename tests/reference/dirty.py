@@ -1,6 +1,18 @@
-"""Random dirty outlines, each from a seed: what a repair has to cope with."""
+"""Random dirty outlines, each from a seed, and what has to come of every one of them.
+
+A person can run as many as wanted: ``python tests/reference/dirty.py 1000``.
+"""
+
+import re
+import sys
+import time
+from collections import Counter, defaultdict
 
 import numpy as np
+import shapely
+
+import adaptmesh as am
+from adaptmesh.convert import to_shapely
 
 SCALES = [1e-6, 1e-3, 1.0, 1e3, 1e6]
 OFFSETS = [0.0, 1.0, 1e3, 1e6]  # times the scale
@@ -15,6 +27,9 @@ def dirty_outline(seed):
 
 
 def placed(outline, scale, shift):
+    if isinstance(outline, am.Outline):
+        points = placed(outline.points, scale, shift)
+        return am.Outline(points, outline.segments, outline.holes, names=outline.names)
     if isinstance(outline, dict):
         return {name: placed(polygon, scale, shift) for name, polygon in outline.items()}
     if isinstance(outline, list):
@@ -106,6 +121,24 @@ def parallel(rng):
     return np.concatenate([np.stack([x, y], axis=1), [(0.5, 2.0)]])
 
 
+def segments(rng):
+    """A frame with named lines in it that cross, overlap and nearly meet it and each other."""
+    points = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    pairs = [(0, 1), (1, 2), (2, 3), (3, 0)]
+    blur = rng.choice([0, 1e-13, 1e-10, 1e-9])
+    for _ in range(rng.integers(1, 20)):
+        n = len(points)
+        start = rng.choice([0.0, 0.25, 0.5, 1.0], 2) if rng.random() < 0.5 else rng.random(2)
+        end = np.array([rng.choice([0.0, 1.0]), rng.random()])[:: rng.choice([-1, 1])]
+        points += [np.clip(start + blur * rng.standard_normal(2), 0, 1), np.clip(end, 0, 1)]
+        pairs.append((n, n + 1))
+        if rng.random() < 0.2:
+            pairs.append(pairs[rng.integers(len(pairs))])
+    owner = rng.integers(0, 3, len(pairs))
+    names = {str(k): np.flatnonzero(owner == k).tolist() for k in range(3)}
+    return am.Outline(np.array(points), np.array(pairs), names=names)
+
+
 MAKERS = {
     maker.__name__: maker
     for maker in (
@@ -118,5 +151,93 @@ MAKERS = {
         coverage,
         fan,
         parallel,
+        segments,
     )
 }
+
+
+def check(seed):
+    """What came of an outline, (its kind, that, the error of the area); see `check_outline`."""
+    kind, dirty = dirty_outline(seed)
+    return kind, *check_outline(dirty)
+
+
+def check_outline(dirty):
+    """Repair an outline, mesh it, and hold it against shapely; returns what came of it.
+
+    "refused" is fine if the message has a place. Anything that may not be raises.
+    """
+    try:
+        domain, repairs = am.repair(dirty)
+    except am.DomainError as error:
+        assert re.search(r"at \(-?\d", str(error)), f"no place in: {error}"
+        return "refused", 0.0
+    area = sum(polygon.area for polygon in to_shapely(domain).values())
+    assert_all_is_there(dirty, domain, repairs)
+    mesh = am.generate(domain, np.ptp(domain.points, axis=0).max() / 8)
+    assert mesh.validate().ok, str(mesh.validate())
+    error = abs(mesh.areas.sum() / area - 1)
+    assert error < 1e-9 + rounding(domain), f"area {mesh.areas.sum()!r} instead of {area!r}"
+    assert abs(domain.area / area - 1) < 1e-12
+    return "repaired" if repairs else "clean", error
+
+
+def rounding(domain):
+    """What the rounding of new points on the boundary can do to its area, relatively."""
+    p = domain.points[domain.pieces]
+    length = np.hypot(*(p[:, 1] - p[:, 0]).T).sum()
+    return np.finfo(float).eps * np.abs(domain.points).max() * length / domain.area
+
+
+def assert_all_is_there(dirty, domain, repairs):
+    """What shapely makes of the polygons by itself has the same area; all names are there."""
+    if isinstance(dirty, am.Outline):
+        lost = [record for record in repairs if record.kind == "name lost"]
+        used = {name for name, mine in dirty.names.items() if len(mine)}
+        tags = {name for name, tag in domain.names.items() if (domain.segment_tags == tag).any()}
+        assert len(used) <= len(tags) + len(lost)
+        expected, p = shapely.box(*bounds(dirty.points)).area, dirty.points[dirty.segments]
+        length = np.hypot(*(p[:, 1] - p[:, 0]).T).sum()
+    else:
+        parts = dirty.values() if isinstance(dirty, dict) else [dirty]
+        rings = [part if isinstance(part, list) else [part] for part in parts]
+        # Far from the origin `make_valid` loses slices; differences are nearly exact.
+        origin = rings[0][0][0]
+        rings = [[ring - origin for ring in part] for part in rings]
+        valid = [[made_valid(ring) for ring in part] for part in rings]
+        if any(len(part) > 2 for part in valid):
+            return  # holes in holes are islands to us, and holes to shapely
+        whole = shapely.union_all(
+            [shapely.difference(p[0], shapely.union_all(p[1:])) for p in valid]
+        )
+        expected = whole.area
+        length = sum(shapely.LinearRing(ring).length for part in rings for ring in part)
+    slack = 4 * max(repairs.displacement, repairs.tolerance) * length
+    assert abs(domain.area - expected) <= slack, f"area {domain.area} instead of {expected}"
+
+
+def made_valid(ring):
+    return shapely.make_valid(shapely.Polygon(ring), method="structure", keep_collapsed=False)
+
+
+def bounds(points):
+    return (*points.min(axis=0), *points.max(axis=0))
+
+
+if __name__ == "__main__":
+    counts, worst, start = defaultdict(Counter), 0.0, time.process_time()
+    for seed in range(int(sys.argv[1])):
+        try:
+            kind, outcome, error = check(seed)
+        except Exception as failure:
+            print(f"seed {seed}, {dirty_outline(seed)[0]}: {failure!r}"[:500])
+            kind, outcome, error = dirty_outline(seed)[0], "FAILED", 0.0
+        counts[kind][outcome] += 1
+        worst = max(worst, error)
+    for kind, outcomes in counts.items():
+        print(f"{kind:16} {dict(outcomes)}")
+    total = sum(counts.values(), Counter())
+    print(
+        f"{dict(total)}; area of the mesh off by {worst:.2g} at most; "
+        f"{time.process_time() - start:.0f} s CPU"
+    )
