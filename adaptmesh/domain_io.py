@@ -8,6 +8,7 @@ from pathlib import Path
 
 from .coverage import domain_of_shapes
 from .domain import Domain
+from .drawings import Drawing, read_dxf, read_svg
 from .errors import DomainError
 from .geo import read_geo
 from .geojson import read_geojson
@@ -66,12 +67,12 @@ def read_domain(path: str | os.PathLike[str]) -> Domain:
     try:
         if isinstance(raw, Domain):
             return raw
-        return raw.domain() if isinstance(raw, Outline) else domain_of_shapes(raw)
+        return domain_of_shapes(raw) if isinstance(raw, list) else raw.domain()
     except DomainError as error:
         raise DomainError(f"{path}: {error}") from error
 
 
-def read_raw(path: str | os.PathLike[str]) -> Domain | Outline | list[Shape]:
+def read_raw(path: str | os.PathLike[str]) -> Domain | Outline | Drawing | list[Shape]:
     """What is in a file that `read_domain` can read, before it is checked."""
     path = Path(path)
     suffix = path.suffix.lower()
@@ -89,26 +90,14 @@ def _domain_of_mesh_file(path: Path) -> Domain:
     return Domain.of_mesh(mesh) if mesh.domain is None else mesh.domain
 
 
-def _domain_of_svg(path: Path) -> Domain:
-    from .drawings import read_svg
-
-    return read_svg(path).domain()
-
-
-def _domain_of_dxf(path: Path) -> Domain:
-    from .drawings import read_dxf
-
-    return read_dxf(path).domain()
-
-
-_READERS: dict[str, Callable[[Path], Domain | Outline | list[Shape]]] = {
+_READERS: dict[str, Callable[[Path], Domain | Outline | Drawing | list[Shape]]] = {
     ".geojson": read_geojson,
     ".json": read_geojson,
     ".wkt": read_wkt,
     ".shp": read_shapefile,
     ".poly": read_poly,
-    ".svg": _domain_of_svg,
-    ".dxf": _domain_of_dxf,
+    ".svg": read_svg,
+    ".dxf": read_dxf,
     ".geo": read_geo,
 }
 

@@ -41,8 +41,7 @@ class Outline:
 
     @classmethod
     def of_domain(cls, domain: Domain) -> Outline:
-        """The arguments that a domain was made of; a `DomainError` if it has curves."""
-        refuse_curves(domain, "repair")
+        """The arguments that a domain of straight segments was made of."""
         regions: dict[str, ArrayLike] = {
             name: domain.seeds[domain.seed_regions == number]
             for name, number in domain.region_names.items()
@@ -126,18 +125,6 @@ class Shape:
         parts = [coordinates] if kind == "Polygon" else coordinates
         read = [[_ring(ring, label) for ring in part] for part in parts]
         return cls(label, name, [part for part in read if part], closed=True)
-
-
-def refuse_curves(domain: Domain, what: str) -> None:
-    """Say that something works on straight segments only."""
-    if domain.curved.runs:
-        curved = int(np.flatnonzero(domain.curved.segment_runs >= 0)[0])
-        x, y = domain.points[domain.segments[curved, 0]].tolist()
-        raise DomainError(
-            f"the domain has curves, one of them through ({x:.10g}, {y:.10g}), and {what} is for "
-            "straight segments. A domain of curves was checked when it was made; what it should "
-            "not have is to be left out of the curves, or to be done on a polygon of their points"
-        )
 
 
 def label_of(number: int, name: str | None) -> str:

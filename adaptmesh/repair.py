@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from .arrangement import Repair, Repairs
+from .arrangement import Repair, Repairs, used_tolerance
 from .coverage import repaired_domain_of_shapes
 from .domain import Domain
+from .drawings import Drawing
 from .geojson import shapes_of_geojson
 from .raw import Outline, Shape
 from .repair_segments import repaired_domain_of_segments
@@ -35,9 +36,9 @@ def repair(dirty: Any, tolerance: float | None = None) -> tuple[Domain, Repairs]
         ============================  ============================================================
     tolerance : float, optional
         What is nearer than this is made one, in units of the coordinates. The default is 1e-9 of
-        the extent, about the rounding of text files and of earlier computations; borders that
-        miss each other by more need more. Less than 4 units in the last place of the
-        largest coordinate is taken as that.
+        the extent, about the rounding of text files and of earlier computations (of drawings,
+        1e-6); borders that miss each other by more need more. Less than 4 units in the last place
+        of the largest coordinate is taken as that.
 
     Returns
     -------
@@ -67,6 +68,10 @@ def repair(dirty: Any, tolerance: float | None = None) -> tuple[Domain, Repairs]
     left, are removed. Segments of an `Outline` are all kept, except those that stick out of the
     domain and were drawn there and back.
 
+    Repair is for straight segments. Curves have to fit when a domain is made of them
+    (`Domain.from_curves`); a domain with curves is returned as it is, and a drawing with a curve
+    has to be clean.
+
     Examples
     --------
     >>> domain, repairs = repair([(0, 0), (2, 2), (2, 0), (0, 2)])
@@ -81,7 +86,14 @@ def repair(dirty: Any, tolerance: float | None = None) -> tuple[Domain, Repairs]
         from .domain_io import read_raw
 
         dirty = read_raw(dirty)
+    if isinstance(dirty, Drawing) and not dirty.is_straight:
+        dirty = dirty.domain()
+    if isinstance(dirty, Drawing):
+        tolerance = dirty.join_tolerance if tolerance is None else tolerance
+        dirty = dirty.outline()
     if isinstance(dirty, Domain):
+        if dirty.curved.runs:
+            return dirty, Repairs((), used_tolerance(dirty.points, tolerance))
         dirty = Outline.of_domain(dirty)
     if isinstance(dirty, Outline):
         return repaired_domain_of_segments(dirty, tolerance)

@@ -17,7 +17,6 @@ from .domain import Domain
 from .errors import DomainError
 from .loops import small_loops
 from .outline import regions_beside
-from .raw import refuse_curves
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -82,6 +81,8 @@ def simplify(
 
     Raises
     ------
+    DomainError
+        If the domain has curves; their points do not force small triangles, only their corners do.
     MetricError
         If the metric is not valid at a point of the domain.
 
@@ -94,7 +95,7 @@ def simplify(
     """
     if not isinstance(domain, Domain):
         raise DomainError(f"a Domain is wanted, not {type(domain).__name__}: see adaptmesh.repair")
-    refuse_curves(domain, "simplify")
+    _refuse_curves(domain)
     for name, value in (("share", share), ("loops_below", loops_below)):
         if not 0 <= value < np.inf:
             raise ValueError(f"{name}={value!r}: a number of sizes is wanted, from 0")
@@ -108,6 +109,16 @@ def simplify(
     displacement = _record(domain.points, result, log)
     simple = _rebuilt(domain, lines, result, lone) if log else domain
     return simple, Dropped(tuple(log), share, displacement)
+
+
+def _refuse_curves(domain: Domain) -> None:
+    if domain.curved.runs:
+        curved = int(np.flatnonzero(domain.curved.segment_runs >= 0)[0])
+        raise DomainError(
+            f"the domain has curves, one of them through "
+            f"{at(*domain.points[domain.segments[curved, 0]])}, and simplify is for straight "
+            "segments: leave small curves out before the domain is made"
+        )
 
 
 @dataclass(frozen=True)

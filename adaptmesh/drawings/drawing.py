@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..curves import Curve, EllipticArc
+from ..arrangement import first_of_equal
+from ..curves import Curve, EllipticArc, Polyline
 from ..domain import Domain
 from ..errors import DomainError
+from ..raw import Outline
 
 JOINED = 1e-6
 """Ends of curves within this share of the extent are one: drawings hold rounded numbers."""
@@ -29,13 +31,43 @@ class Drawing:
             self.names.setdefault(name, []).append(len(self.curves))
         self.curves.append(curve)
 
+    @property
+    def is_straight(self) -> bool:
+        """Whether it holds straight lines only."""
+        return all(isinstance(curve, Polyline) for curve in self.curves)
+
+    @property
+    def join_tolerance(self) -> float:
+        """Ends that are nearer than this are one, in units of the coordinates."""
+        points = np.concatenate([c.point(np.linspace(0, 1, 9)) for c in self.curves])
+        return JOINED * float(np.ptp(points, axis=0).max())
+
     def domain(self) -> Domain:
         """What the curves enclose: inside is what an odd number of boundaries encloses."""
+        self._check_not_empty()
+        return Domain.from_curves(self.curves, names=self.names, join_tolerance=self.join_tolerance)
+
+    def outline(self) -> Outline:
+        """The same of straight lines, as points and segments that nobody has checked."""
+        self._check_not_empty()
+        lines = [curve.points for curve in self.curves if isinstance(curve, Polyline)]
+        stop = np.cumsum([len(points) for points in lines])
+        points = np.concatenate(lines)
+        number = np.arange(len(points))
+        starts = np.delete(number, stop - 1)  # a line's last point starts no segment
+        owner = np.repeat(np.arange(len(lines)), [len(points) - 1 for points in lines])
+        first = first_of_equal(points)
+        kept = np.flatnonzero(first == number)
+        segments = np.searchsorted(kept, first[np.stack([starts, starts + 1], axis=1)])
+        names = {
+            name: np.flatnonzero(np.isin(owner, curves)).tolist()
+            for name, curves in self.names.items()
+        }
+        return Outline(points[kept], segments, "nesting", names=names)
+
+    def _check_not_empty(self) -> None:
         if not self.curves:
             raise DomainError("it draws no lines: there is nothing to mesh")
-        points = np.concatenate([c.point(np.linspace(0, 1, 9)) for c in self.curves])
-        tolerance = JOINED * float(np.ptp(points, axis=0).max())
-        return Domain.from_curves(self.curves, names=self.names, join_tolerance=tolerance)
 
 
 def affine_arc(
