@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9]*.py"))
-PAGES = [ROOT / "docs" / "start.md", ROOT / "docs" / "metrics.md"]
+PAGES = [ROOT / "docs" / f"{page}.md" for page in ("start", "domains", "metrics")]
 
 # Replaces the pictures where none can be drawn, as on a server without any OpenGL.
 NO_PICTURES = "import adaptmesh; adaptmesh.plot = lambda *args, **keywords: None\n"

@@ -18,7 +18,7 @@ import metrics
 # Functions that adaptmesh.generate calls, and what their time is listed under.
 STAGES = {
     "predict": "predict",
-    "cut_segments": "cut",
+    "cut_outline": "cut",
     "triangulate_outline": "triangulate",
     "place_ahead_of_front": "front",
     "place_along_edges": "edges",
