@@ -14,6 +14,7 @@ from .curved import Curved, skeleton_of
 from .curves import Curve
 from .domain_input import (
     OR_REPAIR,
+    ByLabel,
     Floats,
     Inside,
     Ints,
@@ -43,11 +44,14 @@ class Domain:
     holes : sequence of (x, y), or "nesting"
         A point inside each hole. ``"nesting"``: what an odd number of boundaries encloses is
         inside, what an even number encloses is a hole; an island in a hole is inside again.
-    regions : mapping of str to (x, y), optional
-        For each named region a point inside it, or several points if it has several parts. A part
-        without a point belongs to region 0, which has no name.
-    names : mapping of str to sequence of int, optional
-        The segments that bear each name. A segment bears at most one.
+    regions : mapping of str or int to (x, y), optional
+        For each region, by its name or (if it has none) its number, a point inside it, or several
+        points if it has several parts. A part without a point belongs to region 0.
+    names : mapping of str or int to sequence of int, optional
+        The segments that bear each name, or each tag that has no name. A segment bears at most one.
+    tags, region_tags : mapping of str to int, optional
+        Numbers of names, for files and solvers that know only numbers. Other names get the least
+        numbers from 1 on that are free.
 
     Raises
     ------
@@ -67,15 +71,17 @@ class Domain:
         points: ArrayLike,
         segments: ArrayLike,
         holes: ArrayLike | str = (),
-        regions: Mapping[str, ArrayLike] | None = None,
-        names: Mapping[str, Iterable[int]] | None = None,
+        regions: ByLabel[ArrayLike] | None = None,
+        names: ByLabel[Iterable[int]] | None = None,
+        tags: Mapping[str, int] | None = None,
+        region_tags: Mapping[str, int] | None = None,
     ) -> None:
         self.points = checked_points(points, "point")
         self.segments = checked_segments(segments, self.points)
-        self.names, self.segment_tags = checked_names(names or {}, len(self.segments), "segment")
-        self._build(
-            Inside.checked(holes, regions), Curved.nothing(len(self.points), len(self.segments))
-        )
+        n = len(self.segments)
+        self.names, self.segment_tags = checked_names(names or {}, n, "segment", tags)
+        inside = Inside.checked(holes, regions, region_tags)
+        self._build(inside, Curved.nothing(len(self.points), n))
 
     def _build(self, inside: Inside, curved: Curved) -> None:
         """Triangulate what points, segments, names and tags enclose."""
@@ -101,7 +107,7 @@ class Domain:
         outer: Any,
         holes: Sequence[ArrayLike] = (),
         *,
-        names: Mapping[str, Iterable[int]] | None = None,
+        names: ByLabel[Iterable[int]] | None = None,
     ) -> Domain:
         """A domain bounded by closed rings.
 
@@ -112,7 +118,7 @@ class Domain:
             ``MultiPolygon``, or anything else with a ``__geo_interface__`` of these.
         holes : sequence of (n, 2) array_like
             The rings of the holes; a ring inside a hole is an island.
-        names : mapping of str to sequence of int, optional
+        names : mapping of str or int to sequence of int, optional
             As in `Domain`; segments are numbered ring by ring, in the order given.
         """
         if hasattr(outer, "__geo_interface__"):
@@ -138,9 +144,11 @@ class Domain:
         cls,
         curves: Sequence[Curve],
         *,
-        names: Mapping[str, Iterable[int]] | None = None,
+        names: ByLabel[Iterable[int]] | None = None,
         holes: ArrayLike | str = "nesting",
-        regions: Mapping[str, ArrayLike] | None = None,
+        regions: ByLabel[ArrayLike] | None = None,
+        tags: Mapping[str, int] | None = None,
+        region_tags: Mapping[str, int] | None = None,
         points: ArrayLike = (),
         corner_angle: float = 40.0,
         join_tolerance: float | None = None,
@@ -156,9 +164,9 @@ class Domain:
             From `adaptmesh.curves`; those of a closed boundary may come in any order and
             direction. They may meet only at ends: cut a curve where another one ends on it, or
             crosses it (`adaptmesh.curves.Curve.part`).
-        names : mapping of str to sequence of int, optional
-            The curves that bear each name, by number from 0. A curve bears at most one.
-        holes, regions
+        names : mapping of str or int to sequence of int, optional
+            The curves that bear each name (or tag), by number from 0. A curve bears at most one.
+        holes, regions, tags, region_tags
             As in `Domain`.
         points : (m, 2) array_like
             Isolated points inside the domain, which become vertices.
@@ -191,10 +199,10 @@ class Domain:
         3.0
         """
         curves = tuple(curves)
-        numbers, tags = checked_names(names or {}, len(curves), "curve")
-        inside = Inside.checked(holes, regions)
+        numbers, tag_of = checked_names(names or {}, len(curves), "curve", tags)
+        inside = Inside.checked(holes, regions, region_tags)
         isolated = checked_points(points, "point", least=0)
-        skeleton = skeleton_of(curves, tags, inside, isolated, corner_angle, join_tolerance)
+        skeleton = skeleton_of(curves, tag_of, inside, isolated, corner_angle, join_tolerance)
         domain = cls.__new__(cls)
         domain.points = checked_points(skeleton.points, "point")
         domain.segments, domain.segment_tags = skeleton.segments, skeleton.segment_tags

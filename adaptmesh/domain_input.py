@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,11 @@ from .errors import DomainError
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+
+Label = str | int
+"""A name, or a number that has none."""
+Value = TypeVar("Value")
+ByLabel = Mapping[str, Value] | Mapping[int, Value] | Mapping[Label, Value]
 
 LARGEST = 1e75  # coordinate: its fourth power is still a double
 OR_REPAIR = "or let adaptmesh.repair do it"
@@ -30,13 +36,18 @@ class Inside:
     seed_regions: Ints
 
     @classmethod
-    def checked(cls, holes: ArrayLike | str, regions: Mapping[str, ArrayLike] | None) -> Inside:
+    def checked(
+        cls,
+        holes: ArrayLike | str,
+        regions: ByLabel[ArrayLike] | None,
+        given: Mapping[str, int] | None,
+    ) -> Inside:
         """From the arguments of `Domain`."""
         nesting = isinstance(holes, str)
         if nesting and holes != "nesting":
             raise DomainError(f"holes={holes!r}: give points inside the holes, or 'nesting'")
         places = checked_points(() if nesting else holes, "hole", least=0)
-        return cls(nesting, places, *checked_regions(regions or {}))
+        return cls(nesting, places, *checked_regions(regions or {}, given or {}))
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
@@ -102,26 +113,30 @@ def checked_segments(segments: ArrayLike, points: Floats) -> Ints:
     return out
 
 
-def checked_regions(regions: Mapping[str, ArrayLike]) -> tuple[Mapping[str, int], Floats, Ints]:
-    numbers: dict[str, int] = {}
+def checked_regions(
+    regions: ByLabel[ArrayLike], given: Mapping[str, int]
+) -> tuple[Mapping[str, int], Floats, Ints]:
+    """The number of each name, the seeds (s, 2), and the region of each, or a `DomainError`."""
+    names, numbers = numbered(regions, given, "region")
     seeds, owners = [], []
-    for name, where in regions.items():
-        numbers[str(name)] = len(numbers) + 1
+    for number, (name, where) in zip(numbers, regions.items(), strict=True):
         points = checked_points(np.atleast_2d(np.asarray(where)), f"region {name!r} point", least=1)
         seeds.append(points)
-        owners += [numbers[str(name)]] * len(points)
+        owners += [number] * len(points)
     all_seeds = np.concatenate(seeds) if seeds else np.empty((0, 2))
-    return MappingProxyType(numbers), read_only(all_seeds), read_only(np.array(owners, np.int32))
+    return names, read_only(all_seeds), read_only(np.array(owners, np.int32))
 
 
 def checked_names(
-    names: Mapping[str, Iterable[int]], n: int, what: str = "segment"
+    names: ByLabel[Iterable[int]],
+    n: int,
+    what: str = "segment",
+    given: Mapping[str, int] | None = None,
 ) -> tuple[Mapping[str, int], Ints]:
     """The tag of each name and of each of n segments (or curves), or a `DomainError`."""
-    numbers: dict[str, int] = {}
+    tag_of, numbers = numbered(names, given or {}, "tag")
     tags = np.zeros(n, np.int32)
-    for name, segments in names.items():
-        numbers[str(name)] = tag = len(numbers) + 1
+    for tag, (name, segments) in zip(numbers, names.items(), strict=True):
         for i in segments:
             if not 0 <= i < n:
                 raise DomainError(
@@ -129,7 +144,45 @@ def checked_names(
                     f"0 to {n - 1}"
                 )
             if tags[i] not in (0, tag):
-                other = next(n for n, t in numbers.items() if t == tags[i])
+                other = name_of_number(tag_of, tags)[int(tags[i])]
                 raise DomainError(f"{what} {i} is named both {other!r} and {name!r}: choose one")
             tags[i] = tag
-    return MappingProxyType(numbers), read_only(tags)
+    return tag_of, read_only(tags)
+
+
+def numbered(
+    labels: Iterable[Label], given: Mapping[str, int], what: str
+) -> tuple[Mapping[str, int], list[int]]:
+    """The number of each name, and of each label in order.
+
+    A number stands for itself, and has no name; a name has the number that is given for it, or else
+    the least one from 1 on that nothing has yet.
+    """
+    labels = [int(k) if isinstance(k, (int, np.integer)) else str(k) for k in labels]
+    taken = {*given.values(), *(k for k in labels if isinstance(k, int))}
+    for number in taken:
+        if not isinstance(number, (int, np.integer)) or not -(2**31) <= number < 2**31:
+            raise DomainError(f"{what} {number!r}: a whole number of 32 bits is wanted")
+    free = (number for number in itertools.count(1) if number not in taken)
+    names: dict[str, int] = {}
+    numbers = []
+    for label in labels:
+        if isinstance(label, str):
+            names[label] = int(given[label]) if label in given else next(free)
+        numbers.append(names[label] if isinstance(label, str) else label)
+    names.update({name: int(number) for name, number in given.items()})
+    return MappingProxyType(names), numbers
+
+
+def name_of_number(
+    names: Mapping[str, int], numbers: NDArray[np.signedinteger]
+) -> dict[int, Label]:
+    """How messages call each number: by its name, or if it has none as it is."""
+    nameless: dict[int, Label] = {number: number for number in np.unique(numbers).tolist()}
+    return {**nameless, **{number: name for name, number in names.items()}}
+
+
+def labelled(tags: NDArray[np.signedinteger]) -> dict[Label, list[int]]:
+    """The items with each number but 0, as `Domain` takes them, to go with names and numbers."""
+    found = np.unique(tags[tags != 0]).tolist()
+    return {tag: np.flatnonzero(tags == tag).tolist() for tag in found}

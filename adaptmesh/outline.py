@@ -6,10 +6,11 @@ import itertools
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .domain import Domain
+from .domain_input import Label, labelled
 from .errors import DomainError
 from .invariants.subject import edge_keys
 from .mesh import Mesh
@@ -50,7 +51,9 @@ def domain_of_mesh(mesh: Mesh) -> Domain:
         pairs,
         holes=_hole_points(mesh, points, pairs),
         regions=_region_points(mesh, edges),
-        names={name: np.flatnonzero(tag_of == tag).tolist() for name, tag in mesh.names.items()},
+        names=labelled(tag_of),
+        tags=mesh.names,
+        region_tags=mesh.region_names,
     )
 
 
@@ -201,8 +204,8 @@ def _covered(mesh: Mesh, places: Floats) -> NDArray[np.bool_]:
     return out
 
 
-def _region_points(mesh: Mesh, edges: Ints) -> dict[str, Floats]:
-    """For each named region a point in each of its parts."""
+def _region_points(mesh: Mesh, edges: Ints) -> dict[Label, ArrayLike]:
+    """For each region but 0 a point in each of its parts."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -218,10 +221,9 @@ def _region_points(mesh: Mesh, edges: Ints) -> dict[str, Floats]:
     _, part = connected_components(graph, directed=False)
 
     by_area = np.argsort(mesh.areas)[::-1]
-    out: dict[str, Floats] = {}
-    for name, number in mesh.region_names.items():
+    out: dict[Label, ArrayLike] = {}
+    for number in np.unique(mesh.regions[mesh.regions != 0]).tolist():
         mine = by_area[mesh.regions[by_area] == number]
         _, first = np.unique(part[mine], return_index=True)
-        if len(first):
-            out[name] = mesh.points[mesh.triangles[mine[first]]].mean(axis=1)
+        out[number] = mesh.points[mesh.triangles[mine[first]]].mean(axis=1)
     return out

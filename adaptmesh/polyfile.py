@@ -17,7 +17,8 @@ Everything after ``#`` is a comment. If the number of points is 0 they are in th
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -81,8 +82,8 @@ def read_poly(path: str | os.PathLike[str]) -> Outline:
     -------
     Outline
         What the file says, unchecked. Segments with a marker other than 0 bear its decimal form as
-        their name (``"2"``); so do regions with their attribute. Area limits of regions are not
-        used: sizes are the business of the metric.
+        their name (``"2"``), and have it as their tag; so do regions with their attribute. Area
+        limits of regions are not used: sizes are the business of the metric.
 
     Raises
     ------
@@ -100,7 +101,8 @@ def read_poly(path: str | os.PathLike[str]) -> Outline:
     segments, names = _segments(lines, first, len(points))
     n_holes, _ = lines.count("holes")
     holes = [tuple(lines.next(f"hole {i}", 3)[1:3]) for i in range(n_holes)]
-    return Outline(points, segments, holes, _regions(lines), names)
+    regions = _regions(lines)
+    return Outline(points, segments, holes, regions, names, _tags(names), _tags(regions))
 
 
 def _points(lines: _Lines, count: int, header: list[float]) -> tuple[Floats, int]:
@@ -139,6 +141,11 @@ def _segments(lines: _Lines, first: int, n_points: int) -> tuple[Integers, dict[
         if has_marker and marker[0] != 0:
             names.setdefault(f"{marker[0]:g}", []).append(i)
     return segments, names
+
+
+def _tags(names: Iterable[str]) -> dict[str, int]:
+    """The number of each name that is a whole number."""
+    return {name: int(name) for name in names if re.fullmatch(r"-?\d+", name)}
 
 
 def _regions(lines: _Lines) -> dict[str, list[tuple[float, float]]]:

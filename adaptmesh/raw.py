@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .domain import Domain
+from .domain_input import ByLabel, labelled
 from .errors import DomainError, FormatError
 
 if TYPE_CHECKING:
@@ -29,33 +30,43 @@ class Outline:
     points : (n, 2) array_like of float
     segments : (k, 2) array_like of int
     holes : sequence of (x, y), or "nesting"
-    regions : mapping of str to (x, y) or several
-    names : mapping of str to sequence of int
+    regions : mapping of str or int to (x, y) or several
+    names : mapping of str or int to sequence of int
+    tags, region_tags : mapping of str to int
     """
 
     points: ArrayLike
     segments: ArrayLike
     holes: ArrayLike | str = ()
-    regions: Mapping[str, ArrayLike] = field(default_factory=dict)
-    names: Mapping[str, Iterable[int]] = field(default_factory=dict)
+    regions: ByLabel[ArrayLike] = field(default_factory=dict)
+    names: ByLabel[Iterable[int]] = field(default_factory=dict)
+    tags: Mapping[str, int] = field(default_factory=dict)
+    region_tags: Mapping[str, int] = field(default_factory=dict)
 
     @classmethod
     def of_domain(cls, domain: Domain) -> Outline:
         """The arguments that a domain of straight segments was made of."""
-        regions: dict[str, ArrayLike] = {
-            name: domain.seeds[domain.seed_regions == number]
-            for name, number in domain.region_names.items()
-        }
-        names = {
-            name: np.flatnonzero(domain.segment_tags == tag).tolist()
-            for name, tag in domain.names.items()
-        }
-        holes: ArrayLike | str = "nesting" if domain.nesting else domain.holes
-        return cls(domain.points, domain.segments, holes, regions, names)
+        return cls(
+            domain.points,
+            domain.segments,
+            holes="nesting" if domain.nesting else domain.holes,
+            regions={r: domain.seeds[i] for r, i in labelled(domain.seed_regions).items()},
+            names=labelled(domain.segment_tags),
+            tags=domain.names,
+            region_tags=domain.region_names,
+        )
 
     def domain(self) -> Domain:
         """The domain, if nothing is wrong; else a `DomainError` that says what, and where."""
-        return Domain(self.points, self.segments, self.holes, self.regions, self.names)
+        return Domain(
+            self.points,
+            self.segments,
+            self.holes,
+            self.regions,
+            self.names,
+            self.tags,
+            self.region_tags,
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 from .arrangement import Faces, Noded, Repair, Repairs, Words, at, find_faces, node, used_tolerance
 from .arrangement.numbering import unique_edges, used_points
 from .domain import Domain
-from .domain_input import checked_names, checked_pairs, checked_points
+from .domain_input import (
+    checked_names,
+    checked_pairs,
+    checked_points,
+    labelled,
+    name_of_number,
+)
 from .errors import DomainError
 from .raw import Outline
 
@@ -25,7 +31,7 @@ def repaired_domain_of_segments(
     """A domain of points and segments, and what had to be done for it; see `adaptmesh.repair`."""
     points = checked_points(outline.points, "point")
     segments = checked_pairs(outline.segments, len(points)).astype(np.int64)
-    names, tags32 = checked_names(outline.names, len(segments))
+    names, tags32 = checked_names(outline.names, len(segments), given=outline.tags)
     tags = tags32.astype(np.int64)
     holes = (
         outline.holes
@@ -80,7 +86,7 @@ def _overlaps(
     edge, segment = edge[order], noded.segment[order]
     again = np.append(False, edge[1:] == edge[:-1])
     owner = segment[np.maximum.accumulate(np.where(again, 0, np.arange(len(edge))))]
-    name_of = {number: name for name, number in names.items()}
+    name_of = name_of_number(names, tags)
     log = []
     pairs = np.unique(np.stack([owner, segment], axis=1)[again], axis=0)
     for i, j in pairs.tolist():
@@ -135,12 +141,12 @@ def _inside(faces: Faces, holes: Floats | str) -> Bools:
 def _lost_names(
     names: Mapping[str, int], tags: Ints, left: Ints, points: Floats, segments: Ints
 ) -> list[Repair]:
+    name_of = name_of_number(names, tags)
     log = []
-    for name, tag in names.items():
-        had = np.flatnonzero(tags == tag)
-        if len(had) and not (left == tag).any():
-            x, y = points[segments[had[0], 0]].tolist()
-            log.append(Repair("name lost", (x, y), f"no segment named {name!r} is left"))
+    for tag in np.setdiff1d(tags[tags != 0], left).tolist():
+        first = np.flatnonzero(tags == tag)[0]
+        x, y = points[segments[first, 0]].tolist()
+        log.append(Repair("name lost", (x, y), f"no segment named {name_of[tag]!r} is left"))
     return log
 
 
@@ -184,5 +190,7 @@ def _domain(
         np.searchsorted(used, edges),
         holes=holes,
         regions=outline.regions,
-        names={name: np.flatnonzero(edge_tags == tag).tolist() for name, tag in names.items()},
+        names=labelled(edge_tags),
+        tags=names,
+        region_tags=outline.region_tags,
     )

@@ -14,6 +14,7 @@ from .arrangement import Faces, Repair, Repairs, at, find_faces
 from .arrangement.numbering import used_points
 from .decimate import Decimated, decimate, turned
 from .domain import Domain
+from .domain_input import labelled
 from .errors import DomainError
 from .loops import small_loops
 from .outline import regions_beside
@@ -215,8 +216,10 @@ def _rebuilt(domain: Domain, lines: _Lines, result: Decimated, lone: Ints) -> Do
         domain.points[kept],
         np.searchsorted(kept, result.edges),
         holes=_places(faces, region, -1),
-        regions={name: _places(faces, region, r) for name, r in domain.region_names.items()},
-        names={name: np.flatnonzero(tags == tag).tolist() for name, tag in domain.names.items()},
+        regions={r: _places(faces, region, r) for r in np.unique(domain.seed_regions).tolist()},
+        names=labelled(tags),
+        tags=domain.names,
+        region_tags=domain.region_names,
     )
 
 

@@ -44,8 +44,8 @@ def read_geo(path: str | os.PathLike[str]) -> Domain:
     Returns
     -------
     Domain
-        Physical curves and surfaces without a name get their number as name. Curves that bound no
-        surface, and are in none, are left out if there are surfaces.
+        Physical groups keep their numbers as tags; those without a name get it as their name, too.
+        Curves that bound no surface, and are in none, are left out if there are surfaces.
 
     Raises
     ------
@@ -76,6 +76,8 @@ class _Model:
     surfaces: dict[int, list[int]] = field(default_factory=dict)
     curve_names: dict[str, list[int]] = field(default_factory=dict)
     surface_names: dict[str, list[int]] = field(default_factory=dict)
+    curve_tags: dict[str, int] = field(default_factory=dict)
+    surface_tags: dict[str, int] = field(default_factory=dict)
     inner_curves: list[int] = field(default_factory=list)
     inner_points: list[int] = field(default_factory=list)
 
@@ -106,9 +108,11 @@ class _Model:
         elif d.kind == "Disk":
             self._disk(d)
         elif d.kind == "Physical Curve":
-            self._name(self.curve_names, d, self._known(d, self.curves, "curve"))
+            numbers = self._known(d, self.curves, "curve")
+            self._name(self.curve_names, self.curve_tags, d, numbers)
         elif d.kind == "Physical Surface":
-            self._name(self.surface_names, d, self._known(d, self.surfaces, "surface"))
+            numbers = self._known(d, self.surfaces, "surface")
+            self._name(self.surface_names, self.surface_tags, d, numbers)
         elif d.kind != "Physical Point":
             raise FormatError(f"line {d.line}: {d.kind} cannot be read")
 
@@ -130,8 +134,12 @@ class _Model:
         return numbers
 
     @staticmethod
-    def _name(names: dict[str, list[int]], d: Definition, numbers: list[int]) -> None:
-        names.setdefault(d.name or str(d.number), []).extend(numbers)
+    def _name(
+        names: dict[str, list[int]], tags: dict[str, int], d: Definition, numbers: list[int]
+    ) -> None:
+        name = d.name or str(d.number)
+        names.setdefault(name, []).extend(numbers)
+        tags.setdefault(name, d.number)
 
     def _rectangle(self, d: Definition) -> None:
         if len(d.values) not in (5, 6) or d.values[2] != 0 or (len(d.values) == 6 and d.values[5]):
@@ -178,6 +186,8 @@ class _Model:
             names={name: numbers for name, numbers in names.items() if numbers},
             holes=holes,
             regions=regions,
+            tags=self.curve_tags,
+            region_tags=self.surface_tags,
             points=isolated,
             join_tolerance=JOINED * float(np.ptp(ends, axis=0).max()),
         )
