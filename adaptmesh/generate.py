@@ -61,14 +61,18 @@ class FrontPlacement:
     target : float
         Length of the sides to be made; the front corrects it by up to 7 % so that the number of
         triangles it makes is what their metric area is worth.
+    settled : float
+        A point that would move less than this, in metric length, when its place is found anew with
+        the metric there, stays.
     trials : int
-        How often the place of a point is found anew with the metric at the place before.
+        How often the metric is evaluated for the place of a point, at most.
     """
 
     accept: float = 1.35
     spacing: float = 0.8
     target: float = 1.0
-    trials: int = 2
+    settled: float = 0.02
+    trials: int = 3
 
 
 @dataclass(frozen=True)
@@ -251,11 +255,13 @@ def place_ahead_of_front(
     report: Progress,
 ) -> None:
     """Build unit triangles layer by layer, until the front has met itself everywhere."""
-    front = mesher.front(options.accept, options.spacing, options.target)
+    front = mesher.front(
+        options.accept, options.spacing, options.target, options.settled, options.trials
+    )
     while mesher.advance(front):
-        for _ in range(options.trials):
-            front.refine(field(front.wanted()))
-        mesher.insert_ahead(front, field(front.wanted()))
+        while len(wanted := front.wanted()):
+            front.feed(field(wanted))
+        mesher.insert_ahead(front)
         budget.check(mesher.vertex_count)
         report("placing points", budget.progress(mesher.vertex_count))
 

@@ -114,9 +114,10 @@ class Mesher {
         return take_fresh_edges(mesh_, uncut_below);
     }
 
-    Front front(double accept, double spacing, double target) {
+    Front front(double accept, double spacing, double target, double settled, int trials) {
         FrontOptions options;
         options.accept = accept, options.spacing = spacing, options.target = target;
+        options.settled = settled, options.trials = trials;
         return Front(mesh_, options);
     }
 
@@ -125,10 +126,9 @@ class Mesher {
         return front.advance(poll_);
     }
 
-    Index insert_ahead(Front& front, const Tensors& tensors) {
-        expect_rows(tensors.shape(0), front.wanted_count(), "tensors at the wanted points");
+    Index insert_ahead(Front& front) {
         nb::gil_scoped_release release;
-        return front.insert([&](std::size_t i) { return tensor_in(tensors, i); }, poll_);
+        return front.insert(poll_);
     }
 
     Index insert_along_edges(const EdgesToMeasure& edges, double long_edge, double spacing,
@@ -274,9 +274,9 @@ void bind_mesher(nb::module_& m) {
                  const std::size_t n = front.wanted_count();
                  return to_numpy(front.wanted(), {n, 2});
              })
-        .def("refine", [](Front& front, const Tensors& tensors) {
+        .def("feed", [](Front& front, const Tensors& tensors) {
             expect_rows(tensors.shape(0), front.wanted_count(), "tensors at the wanted points");
-            front.refine([&](std::size_t i) { return tensor_in(tensors, i); });
+            front.feed([&](std::size_t i) { return tensor_in(tensors, i); });
         });
 
     nb::class_<Mesher>(m, "Mesher", "A metric mesh and the stages that improve it, in place.")
@@ -293,9 +293,9 @@ void bind_mesher(nb::module_& m) {
         .def("insert_where_finer", &Mesher::insert_where_finer, nb::arg("points"),
              nb::arg("tensors"), nb::arg("ratio"), nb::arg("spacing"))
         .def("front", &Mesher::front, nb::arg("accept"), nb::arg("spacing"), nb::arg("target"),
-             nb::keep_alive<0, 1>())
+             nb::arg("settled"), nb::arg("trials"), nb::keep_alive<0, 1>())
         .def("advance", &Mesher::advance, nb::arg("front"))
-        .def("insert_ahead", &Mesher::insert_ahead, nb::arg("front"), nb::arg("tensors"))
+        .def("insert_ahead", &Mesher::insert_ahead, nb::arg("front"))
         .def("swap", &Mesher::swap, nb::arg("most_passes") = 5)
         .def("swap_worst", &Mesher::swap_worst, nb::arg("below"))
         .def("smooth", &Mesher::smooth)

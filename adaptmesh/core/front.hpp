@@ -9,8 +9,10 @@
 //        /   \    or      /   \        accepted, and (c, b), (a, c) join the front; else the
 //       a --- b          a --- b       point P that makes a unit triangle is wanted
 //
-// Like the sampler, the front asks in rounds: the place of P depends on the metric at P, so that it
-// is evaluated, for a whole layer at once, and the place found anew.
+// Like the sampler, the front asks in rounds: the place of P depends on the metric at P. It is
+// guessed with the metric expected there, the metric is evaluated, for a whole layer at once, and
+// the place found anew; if that is next to the one before, P stays where the metric is known, and
+// else it moves and is asked about again.
 #pragma once
 
 #include <algorithm>
@@ -28,6 +30,8 @@ struct FrontOptions {
     double target = 1.0;    // length of the sides to be made, before book-keeping
     double lowest = 0.6;    // height of the new triangle, at least and ...
     double highest = 1.26;  // ... at most
+    double settled = 0.02;  // a point that would move less than this stays where it is
+    int trials = 3;         // how often a point is asked about, at most
 };
 
 class Front {
@@ -51,40 +55,53 @@ class Front {
             consider(edges_[i]);
         }
         edges_.clear();
+        trial_ = 0;
+        open_.resize(wanted_.size());
+        for (std::size_t i = 0; i < open_.size(); ++i) open_[i] = i;
         return wanted_.size();
     }
 
+    // Where the metric is wanted next; empty when all points have their place.
     std::vector<double> wanted() const {
         std::vector<double> out;
-        out.reserve(2 * wanted_.size());
-        for (const Wanted& w : wanted_) out.push_back(w.at.x), out.push_back(w.at.y);
+        out.reserve(2 * open_.size());
+        for (std::size_t i : open_) out.push_back(wanted_[i].at.x), out.push_back(wanted_[i].at.y);
         return out;
     }
-    std::size_t wanted_count() const { return wanted_.size(); }
+    std::size_t wanted_count() const { return open_.size(); }
 
-    // Finds the points anew with the metrics at the wanted places.
+    // The metrics at the wanted places: settles the points, or finds them anew.
     template <typename TensorAt>
-    void refine(TensorAt&& tensor_at) {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < wanted_.size(); ++i) {
-            Wanted w = wanted_[i];
-            const Tensor m = mesh_.vertices[w.edge.a].metric + mesh_.vertices[w.edge.b].metric;
-            w.at = apex(w.edge, (1.0 / 3) * (m + tensor_at(i)));
-            if (is_in_sight(w)) wanted_[kept++] = w;
+    void feed(TensorAt&& tensor_at) {
+        ++trial_;
+        std::size_t still_open = 0;
+        for (std::size_t k = 0; k < open_.size(); ++k) {
+            Wanted& w = wanted_[open_[k]];
+            w.metric = tensor_at(k);
+            if (trial_ == options_.trials) continue;
+            const Point better = apex(w.edge, w.metric);
+            const double x = better.x - w.at.x, y = better.y - w.at.y;
+            if (w.metric.q(x, y) < options_.settled * options_.settled) continue;
+            w.at = better;
+            if (is_in_sight(w))
+                open_[still_open++] = open_[k];
+            else
+                w.near = NONE;
         }
-        wanted_.resize(kept);
+        open_.resize(still_open);
     }
 
     // Puts the points into the mesh, each with the metric there; new edges join the front.
-    template <typename TensorAt, typename Poll>
-    Index insert(TensorAt&& tensor_at, Poll& poll) {
+    template <typename Poll>
+    Index insert(Poll& poll) {
         PointInserter inserter(mesh_, options_.spacing);
         Index inserted = 0;
         for (std::size_t i = 0; i < wanted_.size(); ++i) {
             if (i % 1024 == 0) poll();
-            const Edge e = wanted_[i].edge;
-            if (inserter.insert(wanted_[i].at, tensor_at(i), wanted_[i].near) !=
-                PointInserter::Outcome::inserted)
+            Wanted& w = wanted_[i];
+            const Edge e = w.edge;
+            if (w.near == NONE) continue;  // out of sight
+            if (inserter.insert(w.at, w.metric, w.near) != PointInserter::Outcome::inserted)
                 continue;
             const Index p = Index(mesh_.vertices.size()) - 1;
             ++inserted;
@@ -102,7 +119,8 @@ class Front {
     struct Wanted {
         Edge edge;
         Point at;
-        Index near;  // the triangle it lies in
+        Index near;     // the triangle it lies in, NONE if it is out of sight
+        Tensor metric;  // at the place, as soon as it is known
     };
 
     // Triangles accepted of late, and how many unit triangles their metric area is worth. Where the
@@ -142,9 +160,27 @@ class Front {
             edges_.push_back({e.a, c});
             return;
         }
-        const Tensor m = mesh_.vertices[e.a].metric + mesh_.vertices[e.b].metric;
-        Wanted w{e, apex(e, 0.5 * m), place.triangle};
+        Wanted w{e, apex(e, expected_metric(e, T.n[place.slot])), place.triangle, {}};
         if (is_in_sight(w)) wanted_.push_back(w);
+    }
+
+    // The metric expected ahead of an edge, as far as vertex d is behind it: that of its middle and
+    // as much more again as the middle has more than d, if that is a metric not far from it.
+    //
+    //            b
+    //          / | .
+    //         d  |   P         behind: the edge as d's triangle sees it
+    //          \ | .
+    //            a
+    Tensor expected_metric(Edge e, Index behind) const {
+        const Tensor middle = 0.5 * (mesh_.vertices[e.a].metric + mesh_.vertices[e.b].metric);
+        if (is_locked(behind)) return middle;
+        const Index d = mesh_.triangle(triangle_of(behind)).v[slot_of(behind)];
+        const Tensor ahead = 2.0 * middle - mesh_.vertices[d].metric;
+        const double det = ahead.a * ahead.c - ahead.b * ahead.b;
+        const double known = middle.a * middle.c - middle.b * middle.b;
+        const bool is_near = ahead.a > 0 && det > 0.25 * known && det < 4 * known;
+        return is_near ? ahead : middle;
     }
 
     // Whether the point lies in the domain, and no constraint hides it from its edge: the metric is
@@ -159,11 +195,12 @@ class Front {
     }
 
     // The middle of (a, b) plus the height along the M-orthogonal w of e, for sides of the target
-    // length. Of M only the shape gives w its direction: it is scaled so that huge and tiny sizes
-    // neither overflow nor vanish.
-    Point apex(Edge edge, const Tensor& metric) const {
-        const double scale = 1 / (metric.a + metric.c);
-        const Tensor m = scale * metric;
+    // length; M is the mean of the metrics at a, b and the apex. Of M only the shape gives w its
+    // direction: it is scaled so that huge and tiny sizes neither overflow nor vanish.
+    Point apex(Edge edge, const Tensor& ahead) const {
+        const Tensor sum = mesh_.vertices[edge.a].metric + mesh_.vertices[edge.b].metric + ahead;
+        const double scale = 1 / (sum.a + sum.c);
+        const Tensor m = scale * sum;
         const Point a = mesh_.at(edge.a), b = mesh_.at(edge.b);
         const double ex = b.x - a.x, ey = b.y - a.y;
         const double wx = -(m.b * ex + m.c * ey), wy = m.a * ex + m.b * ey;
@@ -172,7 +209,7 @@ class Front {
         const double square = target * target - 0.25 * length * length;
         const double height =
             std::min(std::max(std::sqrt(std::max(square, 0.0)), options_.lowest), options_.highest);
-        const double share = height * std::sqrt(scale / m.q(wx, wy));
+        const double share = height * std::sqrt(3 * scale / m.q(wx, wy));
         return {0.5 * (a.x + b.x) + share * wx, 0.5 * (a.y + b.y) + share * wy};
     }
 
@@ -181,6 +218,8 @@ class Front {
     Books books_;
     std::vector<Edge> edges_;
     std::vector<Wanted> wanted_;
+    std::vector<std::size_t> open_;  // those of wanted_ that are asked about
+    int trial_ = 0;
 };
 
 }  // namespace adaptmesh

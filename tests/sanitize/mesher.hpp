@@ -85,8 +85,8 @@ class MesherRun {
     void fill_ahead_of_front() {
         Front front(mesh, {});
         while (front.advance(poll_)) {
-            for (int trial = 0; trial < 2; ++trial) front.refine(at_points(front.wanted()));
-            front.insert(at_points(front.wanted()), poll_);
+            while (front.wanted_count() > 0) front.feed(at_points(front.wanted()));
+            front.insert(poll_);
         }
     }
 
