@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9]*.py"))
-PAGES = [ROOT / "docs" / f"{page}.md" for page in ("start", "domains", "metrics")]
+PAGES = [ROOT / "docs" / f"{page}.md" for page in ("start", "domains", "metrics", "repair")]
 
 # Replaces the pictures where none can be drawn, as on a server without any OpenGL.
 NO_PICTURES = "import adaptmesh; adaptmesh.plot = lambda *args, **keywords: None\n"
@@ -21,7 +21,8 @@ NO_PICTURES = "import adaptmesh; adaptmesh.plot = lambda *args, **keywords: None
 def test_example_runs_and_asserts(example, tmp_path):
     code = example.read_text(encoding="utf-8")
     assert re.search(r"^assert ", code, re.MULTILINE), "an example asserts a number"
-    run = run_python(code if can_draw() else NO_PICTURES + code, tmp_path, "pictures")
+    code = f"__file__ = {str(example)!r}\n" + (code if can_draw() else NO_PICTURES + code)
+    run = run_python(code, tmp_path, "pictures")
     assert run.returncode == 0, run.stderr
     assert "Unit mesh report" in run.stdout
     if can_draw():
