@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +12,7 @@ import metrics
 from metrics import ControlSpace
 
 from .domain import Domain
+from .frozen import frozen_domain
 from .generate import Progress, generate
 from .mesh import Mesh
 
@@ -18,6 +21,7 @@ def adapt(
     mesh: Mesh,
     metric: Any,
     *,
+    frozen: Iterable[str] = (),
     placement: str = "front",
     max_vertices: int = 5_000_000,
     progress: Progress | None = None,
@@ -34,6 +38,8 @@ def adapt(
     metric : array_like, number, callable, or control space
         Values at the vertices: sizes (n,), packed metrics (n, 3) = (m11, m12, m22), or tensors
         (n, 2, 2); or anything else that `generate` takes.
+    frozen : sequence of str, optional
+        Names of boundaries and lines whose edges stay as the mesh has them, to fit a neighbour.
     placement, max_vertices, progress
         As in `generate`.
 
@@ -43,9 +49,9 @@ def adapt(
     """
     domain = mesh.domain or Domain.of_mesh(mesh)
     field = control_space_on(mesh, metric)
-    return generate(
-        domain, field, placement=placement, max_vertices=max_vertices, progress=progress
-    )
+    meshed = frozen_domain(domain, mesh, frozen) if frozen else domain
+    new = generate(meshed, field, placement=placement, max_vertices=max_vertices, progress=progress)
+    return replace(new, domain=domain)
 
 
 def control_space_on(mesh: Mesh, metric: Any) -> ControlSpace:

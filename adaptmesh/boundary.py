@@ -14,6 +14,7 @@ from .chords import Chords, Surroundings, chords_along
 from .curve_cuts import equal_shares, measure_runs
 from .domain import Domain
 from .errors import BudgetError
+from .periodic import tied_chords, tied_cuts
 from .spans import spans_of
 
 Floats = NDArray[np.float64]
@@ -127,13 +128,19 @@ def cut_outline(domain: Domain, field: ControlSpace, most_points: int) -> Outlin
 
     kept = is_straight[domain.piece_segments]
     pieces = _canonical(vertices, number[domain.pieces[kept]])
-    starts, stops = pieces[:, 0], pieces[:, 1]
+    free = np.flatnonzero(~domain.segment_is_frozen[domain.piece_segments[kept]])
+    starts, stops = pieces[free].T
     sampler = _core.edge_sampler(
         vertices[starts], tensors[starts], vertices[stops], tensors[stops], LONGEST_CHORD
     )
     total = measure_edges(sampler, field, most_points).sum()
     _check_budget(len(vertices) + total, most_points)
     cuts, piece = sampler.cut()
+    piece = free[piece].astype(np.int32)
+    if domain.periodic:
+        cuts, piece = tied_cuts(
+            vertices, pieces, cuts, piece, _ties(domain, kept, vertices, pieces)
+        )
     straight = Outline(
         vertices,
         tensors,
@@ -148,8 +155,21 @@ def cut_outline(domain: Domain, field: ControlSpace, most_points: int) -> Outlin
     if not curved.runs:
         return straight
     chords, around = _cut_runs(domain, straight, field, most_points)
+    chords = tied_chords(chords, curved.runs, domain.periodic, TURN, around)
     _check_budget(len(chords.points) + total, most_points)
     return _with_spans(straight, domain, chords, spans_of(chords, around), field)
+
+
+def _ties(domain: Domain, kept: NDArray[np.bool_], points: Floats, pieces: Ints) -> Index:
+    """Pieces, numbered among those kept, that periodic boundaries tie; see `tied_cuts`."""
+    number = np.cumsum(kept) - 1
+    rows = []
+    for pair in domain.periodic:
+        for i, j in number[pair.pieces].tolist():
+            start = pair.motion(points[pieces[i, :1]])
+            off = np.abs(points[pieces[j]] - start).max(axis=1)
+            rows.append((i, j, 0, int(off.argmin())))
+    return np.array(rows, np.intp).reshape(-1, 4)
 
 
 def _check_budget(n: float, most_points: int) -> None:

@@ -47,6 +47,8 @@ class Curved:
         The parameters of its ends on the run.
     is_vertex : (n,) array of bool
         Whether a point of the domain is a vertex of every mesh; the others only hold the chords.
+    corner_angle, join_tolerance : float
+        With which the curves were joined.
     """
 
     curves: tuple[Curve, ...]
@@ -55,6 +57,8 @@ class Curved:
     segment_runs: Ints
     segment_parameters: Floats
     is_vertex: NDArray[np.bool_]
+    corner_angle: float = 0.0
+    join_tolerance: float = 0.0
 
     @classmethod
     def nothing(cls, n_points: int, n_segments: int) -> Curved:
@@ -168,6 +172,8 @@ def skeleton_of(
         read_only(np.concatenate([np.full(n, -1, np.int32), run])),
         read_only(np.concatenate([np.zeros((n, 2)), u])),
         read_only(np.arange(len(points)) < len(vertices)),
+        corner_angle,
+        join_tolerance,
     )
     return Skeleton(points, read_only(segments), read_only(tags[owners]), curved)
 

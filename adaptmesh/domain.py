@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -24,6 +25,7 @@ from .domain_input import (
     read_only,
 )
 from .errors import DomainError
+from .periodic import Motion, PeriodicPair, periodic_pair
 
 if TYPE_CHECKING:
     from .mesh import Mesh
@@ -100,6 +102,10 @@ class Domain:
         self.pieces: Ints = read_only(pieces)
         self.piece_segments: Ints = read_only(segment)
         self.piece_is_boundary: NDArray[np.bool_] = read_only(is_boundary)
+        #: Pairs of boundaries whose vertices correspond, see `with_periodic`.
+        self.periodic: tuple[PeriodicPair, ...] = ()
+        #: Which segments are not cut, (k,), see `with_frozen`.
+        self.segment_is_frozen: NDArray[np.bool_] = read_only(np.zeros(len(self.segments), bool))
 
     @classmethod
     def polygon(
@@ -216,6 +222,91 @@ class Domain:
         from .outline import domain_of_mesh
 
         return domain_of_mesh(mesh)
+
+    def with_periodic(
+        self,
+        first: str,
+        second: str,
+        *,
+        translation: ArrayLike | None = None,
+        rotation: float | None = None,
+        centre: ArrayLike = (0.0, 0.0),
+        tolerance: float | None = None,
+    ) -> Domain:
+        """The same domain, where two boundaries get vertices that correspond.
+
+        In every mesh of it, by `generate` or `adapt`, each vertex on the first boundary has one on
+        the second that a rigid motion carries it to; `Mesh.periodic_vertices` gives the pairs. Both
+        are cut for the finer of the two metrics.
+
+        Parameters
+        ----------
+        first, second : str
+            Names of boundaries, one the image of the other.
+        translation : (dx, dy), optional
+            From the first to the second; if no motion is given, from the mean of the corners of
+            the one to that of the other.
+        rotation : float, optional
+            Instead, an angle in degrees, anticlockwise about `centre`.
+        centre : (x, y)
+        tolerance : float, optional
+            How far images may be off; 1e-9 of the extent if not given.
+
+        Raises
+        ------
+        DomainError
+            A name is not known, or something on one boundary has no image on the other.
+        """
+        if translation is not None and rotation is not None:
+            raise DomainError("give a translation or a rotation, not both")
+        motion = None
+        if translation is not None:
+            motion = Motion.translation(translation)
+        elif rotation is not None:
+            motion = Motion.rotation(rotation, centre)
+        for other in self.periodic:
+            for name in {first, second} & {other.first, other.second}:
+                raise DomainError(
+                    f"{name!r} is periodic already, with {other.first!r} and {other.second!r}"
+                )
+        pair = periodic_pair(self, first, second, motion, tolerance)
+        out = copy.copy(self)
+        out.periodic = (*self.periodic, pair)
+        return out
+
+    def with_frozen(self, *names: str) -> Domain:
+        """The same domain, where each segment of these names is one edge of every mesh.
+
+        To fit the mesh of a neighbour, whose edges there are the segments: they are not cut, be the
+        sizes asked for large or small. `adapt` freezes boundaries as a mesh has them.
+
+        Raises
+        ------
+        DomainError
+            A name is not known, or bears a curve, or a segment of it is divided by a point.
+        """
+        frozen = self.segment_is_frozen.copy()
+        for name in names:
+            if name not in self.names:
+                known = ", ".join(map(repr, self.names)) or "none"
+                raise DomainError(f"no boundary is named {name!r}; the names are: {known}")
+            mine = self.segment_tags == self.names[name]
+            if (mine & (self.curved.segment_runs >= 0)).any():
+                raise DomainError(
+                    f"{name!r} is curved, so that nothing says where its vertices are: freeze it "
+                    "in `adapt`, as a mesh has it, or give it as points and segments"
+                )
+            frozen |= mine
+        times = np.bincount(self.piece_segments, minlength=len(self.segments))
+        divided = np.flatnonzero(frozen & (times > 1))
+        if len(divided):
+            raise DomainError(
+                f"{self._segment(divided[0])} is to be one edge, but a point lies on it: divide it "
+                "there"
+            )
+        out = copy.copy(self)
+        out.segment_is_frozen = read_only(frozen)
+        return out
 
     @property
     def area(self) -> float:

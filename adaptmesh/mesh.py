@@ -105,6 +105,17 @@ class Mesh:
         number = _look_up(self.region_names, region, "region")
         return np.flatnonzero(self.regions == number).astype(np.int32)
 
+    def periodic_vertices(self) -> dict[tuple[str, str], Ints]:
+        """For each pair of periodic boundaries of the domain, vertices that correspond, (k, 2).
+
+        In each row a vertex on the first boundary and its image on the second; see
+        `Domain.with_periodic`.
+        """
+        from .periodic import periodic_vertices
+
+        pairs = () if self.domain is None else self.domain.periodic
+        return {(p.first, p.second): periodic_vertices(self, p) for p in pairs}
+
     def validate(self) -> Validity:
         """Check every invariant of a mesh by name; see `adaptmesh.validate`."""
         from .validate import validate

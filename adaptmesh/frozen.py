@@ -1,0 +1,83 @@
+"""Boundaries of a mesh that are kept as they are while the rest is meshed anew."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .curves import Curve, Line
+from .domain import Domain
+from .errors import DomainError
+from .mesh import Mesh
+from .periodic import periodic_pair
+
+Floats = NDArray[np.float64]
+
+
+def frozen_domain(domain: Domain, mesh: Mesh, names: Iterable[str]) -> Domain:
+    """The domain with the edges that a mesh of it has on these boundaries for segments, frozen.
+
+    Every name and region keeps its number.
+    """
+    names = list(dict.fromkeys(names))
+    for name in names:
+        if name not in domain.names:
+            known = ", ".join(map(repr, domain.names)) or "none"
+            raise DomainError(f"no boundary is named {name!r}; the names are: {known}")
+    edges = {name: mesh.points[mesh.edges_named(name)] for name in names}
+    numbers = [domain.names[name] for name in names]
+    rest = ~np.isin(domain.segment_tags, numbers)
+    build = _of_curves if domain.curved.curves else _of_segments
+    out = build(domain, edges, rest).with_frozen(*names)
+    for pair in domain.periodic:
+        tied = periodic_pair(out, pair.first, pair.second, pair.motion, None)
+        out.periodic = (*out.periodic, tied)
+    return out
+
+
+def _of_segments(domain: Domain, edges: dict[str, Floats], rest: NDArray[np.bool_]) -> Domain:
+    ends = [domain.points[domain.segments[rest]], *edges.values()]
+    isolated = np.setdiff1d(np.arange(len(domain.points)), domain.segments)
+    places = np.concatenate([*(e.reshape(-1, 2) for e in ends), domain.points[isolated]])
+    points, number = np.unique(places, axis=0, return_inverse=True)
+    segments = number.ravel()[: 2 * sum(map(len, ends))].reshape(-1, 2)
+    tags = np.concatenate(
+        [domain.segment_tags[rest], *(np.full(len(e), domain.names[n]) for n, e in edges.items())]
+    )
+    return Domain(
+        points,
+        segments,
+        holes="nesting" if domain.nesting else domain.holes,
+        regions=_regions(domain),
+        names={name: np.flatnonzero(tags == tag).tolist() for name, tag in domain.names.items()},
+    )
+
+
+def _of_curves(domain: Domain, edges: dict[str, Floats], rest: NDArray[np.bool_]) -> Domain:
+    curved = domain.curved
+    kept = np.unique(curved.segment_curves[rest])
+    tag_of = dict(zip(curved.segment_curves.tolist(), domain.segment_tags.tolist(), strict=True))
+    curves: list[Curve] = [curved.curves[i] for i in kept]
+    tags = [tag_of[i] for i in kept.tolist()]
+    for name, ends in edges.items():
+        curves += [Line(a, b) for a, b in ends]
+        tags += [domain.names[name]] * len(ends)
+    isolated = np.setdiff1d(np.flatnonzero(curved.is_vertex), domain.segments)
+    return Domain.from_curves(
+        curves,
+        names={n: np.flatnonzero(np.array(tags) == t).tolist() for n, t in domain.names.items()},
+        holes="nesting" if domain.nesting else domain.holes,
+        regions=_regions(domain),
+        points=domain.points[isolated],
+        corner_angle=curved.corner_angle,
+        join_tolerance=curved.join_tolerance,
+    )
+
+
+def _regions(domain: Domain) -> dict[str, Floats]:
+    return {
+        name: domain.seeds[domain.seed_regions == number]
+        for name, number in domain.region_names.items()
+    }

@@ -1,0 +1,288 @@
+"""Periodic boundaries: two that a translation or a rotation makes one.
+
+::
+
+        first          second      Both get the same cuts. First each is cut into unit pieces
+      a .------->------. a'        as they would be alone, and of each two parts that correspond
+        |    motion    |           the one with fewer cuts gets the images of those of the other.
+      b '------->------' b'
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .chords import Chords, Surroundings, chords_along
+from .errors import DomainError
+from .runs import Run
+
+if TYPE_CHECKING:
+    from .domain import Domain
+    from .mesh import Mesh
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+Index = NDArray[np.integer]
+
+TOLERANCE = 1e-9
+"""Share of the extent of the domain by which images may miss what they are to meet."""
+
+MOST_ROUNDS = 20  # in which cuts that one side needs are carried to the other
+
+_SAMPLES = 64  # places on each part of a run among which the nearest is looked for
+_NEWTON = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A rigid motion of the plane: x to turn x + shift."""
+
+    turn: Floats
+    shift: Floats
+
+    @classmethod
+    def translation(cls, shift: ArrayLike) -> Motion:
+        return cls(np.eye(2), _vector(shift, "translation"))
+
+    @classmethod
+    def rotation(cls, degrees: float, centre: ArrayLike) -> Motion:
+        """Anticlockwise about a centre."""
+        if not np.isfinite(degrees):
+            raise DomainError(f"rotation={degrees!r}: an angle in degrees is wanted")
+        c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+        turn = np.array([[c, -s], [s, c]])
+        at = _vector(centre, "centre")
+        return cls(turn, at - turn @ at)
+
+    def inverse(self) -> Motion:
+        return Motion(self.turn.T, -self.turn.T @ self.shift)
+
+    def __call__(self, points: Floats) -> Floats:
+        out: Floats = points @ self.turn.T + self.shift
+        return out
+
+
+def _vector(value: ArrayLike, what: str) -> Floats:
+    out = np.array(value, np.float64)
+    if out.shape != (2,) or not np.isfinite(out).all():
+        raise DomainError(f"{what}={value!r}: two finite numbers are wanted")
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicPair:
+    """Two boundaries by name, and what of the one is carried to what of the other.
+
+    Attributes
+    ----------
+    first, second : str
+    motion : Motion
+        From the first to the second.
+    pieces : (k, 2) array of int
+        Straight pieces of the domain, see `Domain.pieces`.
+    runs : (r, 2) array of int
+        Curved runs of the domain.
+    """
+
+    first: str
+    second: str
+    motion: Motion
+    pieces: Index
+    runs: Index
+
+
+def periodic_pair(
+    domain: Domain, first: str, second: str, motion: Motion | None, tolerance: float | None
+) -> PeriodicPair:
+    """Find what belongs together; a `DomainError` names the first place that has no image."""
+    sides = [_side(domain, name) for name in (first, second)]
+    if first == second:
+        raise DomainError(f"{first!r} cannot be periodic with itself: give two names")
+    if tolerance is None:
+        tolerance = TOLERANCE * float(np.ptp(domain.points, axis=0).max())
+    if motion is None:
+        shift = sides[1].places(domain).mean(axis=0) - sides[0].places(domain).mean(axis=0)
+        motion = Motion.translation(shift)
+    for what, at in (("straight pieces", 0), ("curves", 1)):
+        counts = [len(side[at]) for side in sides]
+        if counts[0] != counts[1]:
+            raise DomainError(
+                f"{first!r} has {counts[0]} {what} and {second!r} {counts[1]}: periodic boundaries "
+                "must have the same, one the image of the other"
+            )
+    pieces = _partners(
+        [domain.points[domain.pieces[side.pieces]] for side in sides],
+        motion,
+        tolerance,
+        (first, second),
+    )
+    shapes = [
+        np.array([_outline_of(domain.curved.runs[r]) for r in side.runs]).reshape(-1, 3, 2)
+        for side in sides
+    ]
+    runs = _partners(shapes, motion, tolerance, (first, second))
+    return PeriodicPair(
+        first,
+        second,
+        motion,
+        np.stack([sides[0].pieces, sides[1].pieces[pieces]], axis=1),
+        np.stack([sides[0].runs, sides[1].runs[runs]], axis=1),
+    )
+
+
+class _Side(NamedTuple):
+    """The straight pieces and the runs that bear a name."""
+
+    pieces: Index
+    runs: Index
+
+    def places(self, domain: Domain) -> Floats:
+        ends = domain.points[domain.pieces[self.pieces]].reshape(-1, 2)
+        curved = [_outline_of(domain.curved.runs[r]) for r in self.runs]
+        return np.concatenate([ends, *curved])
+
+
+def _side(domain: Domain, name: str) -> _Side:
+    if name not in domain.names:
+        known = ", ".join(map(repr, domain.names)) or "none"
+        raise DomainError(f"no boundary is named {name!r}; the names are: {known}")
+    mine = domain.segment_tags == domain.names[name]
+    run_of = domain.curved.segment_runs
+    straight = mine & (run_of < 0)
+    return _Side(
+        np.flatnonzero(straight[domain.piece_segments]), np.unique(run_of[mine & (run_of >= 0)])
+    )
+
+
+def _outline_of(run: Run) -> Floats:
+    """The ends of a run and its middle, (3, 2)."""
+    return run.point(np.array([0.0, 0.5 * run.length, run.length]))
+
+
+def _partners(
+    shapes: Sequence[Floats], motion: Motion, tolerance: float, names: tuple[str, str]
+) -> Index:
+    """For each of the first shapes (k, p, 2) the number of the second that is its image.
+
+    Points may come in either order: that of a shape and the reverse.
+    """
+    first, second = shapes
+    if not len(first):
+        return np.empty(0, np.intp)
+    images = motion(first.reshape(-1, 2)).reshape(first.shape)
+    off = np.minimum(
+        np.abs(images[:, None] - second).max(axis=(2, 3)),
+        np.abs(images[:, None] - second[:, ::-1]).max(axis=(2, 3)),
+    )
+    nearest = off.argmin(axis=1)
+    for k, j in enumerate(nearest):
+        if off[k, j] > tolerance:
+            (x, y), (u, v) = first[k, 0].tolist(), images[k, 0].tolist()
+            raise DomainError(
+                f"what begins at ({x:g}, {y:g}) on {names[0]!r} would be carried to ({u:g}, "
+                f"{v:g}), but nothing on {names[1]!r} lies there within {tolerance:g}: check the "
+                "motion"
+            )
+    if len(np.unique(nearest)) < len(nearest):
+        raise DomainError(f"two parts of {names[0]!r} are carried to the same part of {names[1]!r}")
+    out: Index = nearest
+    return out
+
+
+def tied_cuts(
+    points: Floats, pieces: Ints, cuts: Floats, piece: Index, pairs: Index
+) -> tuple[Floats, Ints]:
+    """Cuts of straight pieces, the same on those that correspond.
+
+    Parameters
+    ----------
+    points, pieces : (n, 2), (p, 2) arrays
+    cuts, piece : (c, 2), (c,) arrays
+        Points on pieces, in order along each, and the piece of each.
+    pairs : (k, 4) array of int
+        Two pieces, and which ends of theirs correspond: pieces[i, a] to pieces[j, b].
+    """
+    groups = [cuts[piece == p] for p in range(len(pieces))]
+    for i, j, a, b in pairs.tolist():
+        source, target = ((i, a), (j, b)) if len(groups[i]) >= len(groups[j]) else ((j, b), (i, a))
+        start, end = (points[pieces[source[0], k]] for k in (source[1], 1 - source[1]))
+        span = end - start
+        share = (groups[source[0]] - start) @ span / (span @ span)
+        start, end = (points[pieces[target[0], k]] for k in (target[1], 1 - target[1]))
+        images = start + share[:, None] * (end - start)
+        groups[target[0]] = images if source[1] == target[1] else images[::-1]
+    owner = np.repeat(np.arange(len(pieces), dtype=np.int32), [len(g) for g in groups])
+    return np.concatenate([np.empty((0, 2)), *groups]), owner
+
+
+def tied_chords(
+    chords: Chords,
+    runs: Sequence[Run],
+    pairs: Sequence[PeriodicPair],
+    turn: float,
+    around: Surroundings,
+) -> Chords:
+    """Chords of runs, the same on those that correspond; more where they would cross something."""
+    ties = [(pair, *row) for pair in pairs for row in pair.runs.tolist()]
+    if not ties:
+        return chords
+    for _ in range(MOST_ROUNDS):
+        cuts = [_cuts_of(chords, r) for r in range(len(runs))]
+        for pair, i, j in ties:
+            if len(cuts[i]) >= len(cuts[j]):
+                cuts[j] = _carried(runs[i], runs[j], cuts[i], pair.motion)
+            else:
+                cuts[i] = _carried(runs[j], runs[i], cuts[j], pair.motion.inverse())
+        chords = chords_along(runs, cuts, turn, around)
+        counts = np.bincount(chords.run, minlength=len(runs))
+        differing = [pair for pair, i, j in ties if counts[i] != counts[j]]
+        if not differing:
+            return chords
+    pair = differing[0]
+    raise DomainError(
+        f"{pair.first!r} and {pair.second!r} cannot be cut alike: what comes near one of them "
+        "needs more chords there"
+    )
+
+
+def _cuts_of(chords: Chords, run: int) -> Floats:
+    """The parameters of the ends of all chords of a run, ascending."""
+    return np.unique(chords.u[chords.run == run])
+
+
+def _carried(source: Run, target: Run, u: Floats, motion: Motion) -> Floats:
+    """Parameters on the target of the images of points of the source; ends to ends."""
+    out = np.sort(images_on(target, motion(source.point(u[1:-1]))))
+    cuts: Floats = np.concatenate([[0.0], out, [target.length]])
+    return cuts
+
+
+def images_on(run: Run, points: Floats) -> Floats:
+    """The parameters (n,) of a run nearest to points (n, 2) that lie on it to rounding.
+
+    The nearest of many samples, then Newton's steps for (p(u) - x) . p'(u) = 0, without the second
+    derivative, as the distance is nearly zero.
+    """
+    samples = np.linspace(0, run.length, int(_SAMPLES * run.length) + 1)
+    places = run.point(samples)
+    u = samples[((points[:, None] - places) ** 2).sum(axis=2).argmin(axis=1)]
+    for _ in range(_NEWTON):
+        off, d = points - run.point(u), run.derivative(u)
+        u = np.clip(u + (off * d).sum(axis=1) / (d * d).sum(axis=1), 0, run.length)
+    out: Floats = u
+    return out
+
+
+def periodic_vertices(mesh: Mesh, pair: PeriodicPair) -> Ints:
+    """Vertices (k, 2) of a mesh on the first boundary, and their images on the second."""
+    from scipy.spatial import KDTree
+
+    first, second = (np.unique(mesh.edges_named(name)) for name in (pair.first, pair.second))
+    images = pair.motion(mesh.points[first])
+    _, at = KDTree(mesh.points[second]).query(images)
+    return np.stack([first, second[at]], axis=1).astype(np.int32)
