@@ -27,6 +27,7 @@ from .stopping import Budget, StoppingRule
 from .transfer import METHODS
 from .transfer import transfer as transferred
 
+SHARE_OF_EXTENT = 0.25  # the largest size, where none is given
 UNIT = (np.sqrt(0.5), np.sqrt(2.0))
 
 
@@ -39,7 +40,7 @@ def adapt_loop(
     p: float = 2.0,
     fields: Sequence[str] | None = None,
     h_min: float = 0.0,
-    h_max: float = np.inf,
+    h_max: float | None = None,
     max_anisotropy: float = np.inf,
     gradation: float | None = 1.5,
     recovery: str = "least squares",
@@ -86,7 +87,9 @@ def adapt_loop(
         The fields that steer the mesh; by default all that are real, at the vertices, and not the
         same everywhere. The others are transferred all the same.
     h_min, h_max, max_anisotropy, gradation : optional
-        Bounds on sizes, their ratio and their growth; see `metrics.Limits`.
+        Bounds on sizes, their ratio and their growth; see `metrics.Limits`. By default `h_max` is
+        a quarter of the larger extent of the mesh: derivatives cannot be recovered across a mesh
+        that is one triangle thick.
     recovery, combine : str, optional
         As for `metrics.metric_from_solution`.
     growth : float, optional
@@ -132,6 +135,9 @@ def adapt_loop(
         For options that contradict each other, before anything is done.
     """
     budget = budget or Budget()
+    mesh = _with_domain(mesh)
+    if h_max is None:
+        h_max = SHARE_OF_EXTENT * float(np.ptp(mesh.points, axis=0).max())
     steering = Steering(
         target_vertices,
         error,
@@ -145,9 +151,9 @@ def adapt_loop(
         budget.vertices,
     )
     rule = StoppingRule(tolerance, max_iterations, budget)
-    work = Work(Solver(solve), _with_domain(mesh), steering, transfer)
+    work = Work(Solver(solve), mesh, steering, transfer)
     keeping = Keeping(None if save is None else Path(save), keep_last)
-    history = keeping.begun(_resumed(resume, work.mesh, steering, rule), resume)
+    history = keeping.begun(_resumed(resume, mesh, steering, rule), resume)
     started = time.monotonic()
     while True:
         clock = Clock()

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from . import tensor
 from .arrays import Floats, Ints, as_points, as_triangles
@@ -24,7 +22,8 @@ __all__ = [
     "normalised",
 ]
 
-_PRECISION = 2e-4  # of the logarithm of the factor
+_PRECISION = 5e-4  # of the logarithm of the amount
+_NARROW = 1e-9  # an interval for the logarithm of the factor in which there is no more to find
 _FAR = 200.0  # logarithm of a factor beyond any use
 
 
@@ -234,32 +233,37 @@ def scaled_to(
 ) -> Floats:
     """The metric times the factor with which, after the limits, it meets the goal.
 
-    The root of the excess over the logarithm of the factor, which is continuous and grows: from
-    the factor that would do without limits, in growing steps until the excess changes its sign,
-    then by Brent's method.
+    The root of the excess over the logarithm of the factor, which is continuous and grows, nearly
+    as the logarithm itself: from the factor that would do without limits, in growing steps until
+    the excess changes its sign, then by the rule of false position (Illinois).
     """
-
-    def at(x: float) -> Floats:
-        return limits.applied(np.exp(x) * metric, points, triangles)
-
-    @cache
-    def excess(x: float) -> float:
-        return goal.excess(at(x))
-
     coarsest, finest = _useful_factors(metric, limits)
     x = float(np.clip(-goal.excess(metric), coarsest, finest))
-    here = excess(x)
-    side, step = np.sign(here), max(abs(here), _PRECISION)
-    while side * here > 0:
-        last, step = x, 2 * step
-        x = float(np.clip(x - side * step, coarsest, finest))
-        if x == last:
-            if side > 0 and not goal.grows:
-                return at(x)
-            raise MetricError(_impossible(goal, goal.amount(at(x)), side > 0, limits))
-        here = excess(x)
-    root = x if here == 0 else brentq(excess, last, x, xtol=_PRECISION)
-    return at(root)
+    ends: dict[bool, tuple[float, float]] = {}  # where it is too fine, and where too coarse
+    last: bool | None = None
+    stretch = 1.0
+    while True:
+        met = limits.applied(np.exp(x) * metric, points, triangles)
+        here = goal.excess(met)
+        if abs(here) <= _PRECISION:
+            return met
+        side = here > 0
+        if len(ends) == 2 and side == last:
+            far, excess = ends[not side]
+            ends[not side] = far, excess / 2
+        ends[side], last = (x, here), side
+        if len(ends) == 2:
+            (a, above), (b, below) = ends[True], ends[False]
+            if abs(a - b) <= _NARROW:
+                return met
+            x = (a * below - b * above) / (below - above)
+            continue
+        further = float(np.clip(x - stretch * here, coarsest, finest))
+        if further == x:
+            if side and not goal.grows:
+                return met
+            raise MetricError(_impossible(goal, goal.amount(met), side, limits))
+        x, stretch = further, 2 * stretch
 
 
 def _useful_factors(metric: Floats, limits: Limits) -> tuple[float, float]:

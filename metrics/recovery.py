@@ -60,8 +60,9 @@ def hessians(
     method : {"least squares", "projection", "green"}, optional
         ``"least squares"``: of the quadratic that fits best, with equal weights, the values at
         the vertex and at two rings of neighbours; more rings where these do not determine it well,
-        as at corners. Exact for quadratics. Of first order on any mesh, of second where the
-        neighbours lie symmetrically.
+        as at corners. Where 60 neighbours do not, as the mesh is one triangle thick there, the
+        least curved of those that fit best to two rings. Exact for quadratics. Of first order on
+        any mesh, of second where the neighbours lie symmetrically.
         ``"projection"``: the gradients by the lumped L2 projection, projected again, and made
         symmetric. ``"green"``: tested with the hat function of the vertex,
         H_ij = -(integral of d_i u d_j hat) / (integral of hat), which is defined inside only;
@@ -78,8 +79,9 @@ def hessians(
     ------
     MetricError
         For arrays that do not fit, values that are not finite, a triangle that is not
-        counter-clockwise, a vertex without triangle; and where values do not determine a quadratic
-        (the mesh is but one or two triangles thick), or Green's formula has no vertex inside.
+        counter-clockwise, a vertex without triangle; and where the values of the whole mesh do
+        not determine a quadratic (it has few points, all on two lines or another conic), or
+        Green's formula has no vertex inside.
 
     References
     ----------
@@ -89,12 +91,23 @@ def hessians(
     Kamenski, Huang: How a nonconvergent recovered Hessian works in mesh adaptation. SIAM Journal
     on Numerical Analysis 52 (2014), 1692-1708: why Hessians that do not converge still serve.
     """
+    return derivatives(points, triangles, values, method)[1]
+
+
+def derivatives(
+    points: ArrayLike, triangles: ArrayLike, values: ArrayLike, method: str = "least squares"
+) -> tuple[Floats, Floats]:
+    """First and second derivatives at once, as `gradients` and `hessians` give them.
+
+    With Green's formula the first are by the projection.
+    """
     _check_method(method)
     p, t, u = checked_values(points, triangles, values)
     if method == "least squares":
-        return _fit(p, t, u)[1]
+        return _fit(p, t, u)
     lumped = _Lumped(p, t)
-    return lumped.green(u) if method == "green" else lumped.projected_twice(u)
+    first = lumped.gradient(u)
+    return first, lumped.green(u) if method == "green" else lumped.hessian_of(first)
 
 
 def absolute(hessians: ArrayLike, floor: ArrayLike = 0.0) -> Floats:
@@ -147,8 +160,8 @@ class _Lumped(LinearElements):
         sums = [self.gathered(np.repeat(parts[:, [k]], 3, axis=1)) for k in range(2)]
         return np.stack(sums, axis=1) / self.mass[:, None]
 
-    def projected_twice(self, u: Floats) -> Floats:
-        first = self.gradient(u)
+    def hessian_of(self, first: Floats) -> Floats:
+        """The projection of the derivatives of a gradient (n, 2), made symmetric."""
         of_x, of_y = self.gradient(first[:, 0]), self.gradient(first[:, 1])
         return np.stack([of_x[:, 0], 0.5 * (of_x[:, 1] + of_y[:, 0]), of_y[:, 1]], axis=1)
 

@@ -27,6 +27,48 @@ struct Derivatives {
     Tensor hessian;
 };
 
+// A symmetric 3 x 3 matrix.
+class Symmetric3 {
+  public:
+    double& at(std::size_t i, std::size_t j) { return i >= j ? a_[i][j] : a_[j][i]; }
+
+    // x of least norm with (this) x = right, as if eigenvalues below `least` were zero, which
+    // directions count for nothing. By Jacobi's rotations; what `at` gives is lost.
+    void solve_truncated(const double* right, double least, double* x) {
+        double vectors[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // columns
+        for (int sweep = 0; sweep < 12; ++sweep) {
+            for (std::size_t p = 0; p < 2; ++p) {
+                for (std::size_t q = p + 1; q < 3; ++q) rotate(p, q, vectors);
+            }
+        }
+        x[0] = x[1] = x[2] = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!(at(k, k) > least)) continue;
+            double along = 0;
+            for (std::size_t i = 0; i < 3; ++i) along += vectors[i][k] * right[i];
+            for (std::size_t i = 0; i < 3; ++i) x[i] += vectors[i][k] * along / at(k, k);
+        }
+    }
+
+  private:
+    void rotate(std::size_t p, std::size_t q, double (&vectors)[3][3]) {
+        if (at(p, q) == 0) return;
+        const double theta = (at(q, q) - at(p, p)) / (2 * at(p, q));
+        const double t = std::copysign(1 / (std::abs(theta) + std::hypot(theta, 1.0)), theta);
+        const double c = 1 / std::hypot(t, 1.0), s = t * c;
+        at(p, p) -= t * at(p, q), at(q, q) += t * at(p, q), at(p, q) = 0;
+        const std::size_t r = 3 - p - q;
+        const double rp = at(r, p), rq = at(r, q);
+        at(r, p) = c * rp - s * rq, at(r, q) = s * rp + c * rq;
+        for (double (&row)[3] : vectors) {
+            const double vp = row[p], vq = row[q];
+            row[p] = c * vp - s * vq, row[q] = s * vp + c * vq;
+        }
+    }
+
+    double a_[3][3] = {};
+};
+
 class QuadraticFit {
   public:
     // points: n pairs; values: one for each. Both are kept as they are and must live on.
@@ -38,18 +80,25 @@ class QuadraticFit {
         stencil_.assign(1, vertex);
         seen_[vertex] = vertex;
         std::size_t ring = 0;  // where the outermost ring starts
+        std::size_t near = 0;  // how many vertices are in two rings, or so
         for (int rings = 1;; ++rings) {
             const bool grown = add_ring(vertex, ring);
             if (rings < 2 && grown) continue;
+            if (rings == 2 || near < NEAR) near = stencil_.size();
             const double determined = stencil_.size() < COEFFICIENTS ? 0 : fit(vertex, out);
             if (determined > WELL) return true;
-            if (!grown || stencil_.size() > LARGEST) return determined > BARELY;
+            if (!grown) return determined > BARELY;
+            if (stencil_.size() > LARGEST) {
+                stencil_.resize(near);
+                return fit_least_curved(vertex, out);
+            }
         }
     }
 
   private:
-    static constexpr std::size_t COEFFICIENTS = 6;
-    static constexpr std::size_t LARGEST = 600;        // stencils are not given more rings
+    static constexpr std::size_t COEFFICIENTS = 6, LINEAR = 3;
+    static constexpr std::size_t LARGEST = 60;         // stencils are not given more rings
+    static constexpr std::size_t NEAR = 8;             // what makes two rings enough, if need be
     static constexpr std::ptrdiff_t LARGEST_FAN = 64;  // of many neighbours every k-th is enough
     // The smallest diagonal entry of the triangle of columns of length 1: enough, and too little.
     static constexpr double WELL = 0.08, BARELY = 1e-6;
@@ -72,6 +121,55 @@ class QuadraticFit {
 
     // Fits to the stencil; returns how well it is determined, from 0 to 1.
     double fit(Index vertex, Derivatives& out) {
+        if (!fill_rows(vertex)) return 0;
+        double determined = 1;
+        for (std::size_t j = 0; j < COEFFICIENTS; ++j) {
+            if (length_[j] == 0) return 0;  // as s t for points on the axes only
+            determined = std::min(determined, reflect(j) / length_[j]);
+        }
+        if (!(determined > BARELY)) return 0;
+        double c[COEFFICIENTS];
+        for (std::size_t j = COEFFICIENTS; j-- > 0;) solve_for(j, c);
+        put_derivatives(c, out);
+        return determined;
+    }
+
+    // Of all quadratics that fit best, the one with the least curvature: where the mesh is one
+    // triangle thick, far and wide, nothing tells how the function bends across.
+    //
+    // The norm of the curvature is that of x = (c3, sqrt2 c4, c5) in the round frame. The triangle
+    // of the last three columns, A x = b, is solved without the directions in which A is small.
+    bool fit_least_curved(Index vertex, Derivatives& out) {
+        if (!fill_rows(vertex)) return false;
+        for (std::size_t j = 0; j < LINEAR; ++j) {
+            if (!(reflect(j) > BARELY * length_[j])) return false;
+        }
+        const std::size_t m = stencil_.size();
+        double largest = 0;
+        Symmetric3 square{};
+        double right[3] = {};
+        const double weight[3] = {1, std::sqrt(0.5), 1};
+        for (std::size_t a = 0; a < 3; ++a) {
+            largest = std::max(largest, weight[a] * length_[LINEAR + a]);
+            for (std::size_t i = LINEAR; i < m; ++i) {
+                const double left = weight[a] * entry(i, LINEAR + a);
+                right[a] += left * entry(i, COEFFICIENTS);
+                for (std::size_t b = 0; b <= a; ++b) {
+                    square.at(a, b) += left * weight[b] * entry(i, LINEAR + b);
+                }
+            }
+        }
+        double x[3];
+        square.solve_truncated(right, WELL * WELL * largest * largest, x);
+        double c[COEFFICIENTS] = {0, 0, 0, x[0], weight[1] * x[1], x[2]};
+        for (std::size_t j = LINEAR; j-- > 0;) solve_for(j, c);
+        put_derivatives(c, out);
+        return true;
+    }
+
+    // The rows (1, s, t, s²/2, s t, t²/2 | u) of the stencil in its round frame; false if it lies
+    // on one line.
+    bool fill_rows(Index vertex) {
         const std::size_t m = stencil_.size();
         const double x0 = points_[2 * vertex], y0 = points_[2 * vertex + 1], u0 = values_[vertex];
         double xx = 0, xy = 0, yy = 0;
@@ -79,46 +177,45 @@ class QuadraticFit {
             const double dx = points_[2 * w] - x0, dy = points_[2 * w + 1] - y0;
             xx += dx * dx, xy += dx * dy, yy += dy * dy;
         }
-        const double l11 = std::sqrt(xx / double(m)), l21 = xy / double(m) / l11;
-        const double l22 = std::sqrt(std::max(yy / double(m) - l21 * l21, 0.0));
-        if (!(l11 > 0 && l22 > 0)) return 0;  // all on one line
+        l11_ = std::sqrt(xx / double(m)), l21_ = xy / double(m) / l11_;
+        l22_ = std::sqrt(std::max(yy / double(m) - l21_ * l21_, 0.0));
+        if (!(l11_ > 0 && l22_ > 0)) return false;
 
         rows_.resize(m * COLUMNS);
-        double length[COEFFICIENTS] = {};
+        std::fill(length_, length_ + COEFFICIENTS, 0.0);
         for (std::size_t i = 0; i < m; ++i) {
             const Index w = stencil_[i];
-            const double s = (points_[2 * w] - x0) / l11;
-            const double t = (points_[2 * w + 1] - y0 - l21 * s) / l22;
+            const double s = (points_[2 * w] - x0) / l11_;
+            const double t = (points_[2 * w + 1] - y0 - l21_ * s) / l22_;
             const double row[COLUMNS] = {1, s, t, s * s / 2, s * t, t * t / 2, values_[w] - u0};
             std::copy(row, row + COLUMNS, &rows_[i * COLUMNS]);
-            for (std::size_t j = 0; j < COEFFICIENTS; ++j) length[j] += row[j] * row[j];
+            for (std::size_t j = 0; j < COEFFICIENTS; ++j) length_[j] += row[j] * row[j];
         }
-        double determined = 1;
-        for (std::size_t j = 0; j < COEFFICIENTS; ++j) {
-            if (length[j] == 0) return 0;  // as s t for points on the axes only
-            determined = std::min(determined, reflect(j, m) / std::sqrt(length[j]));
-        }
-        if (!(determined > BARELY)) return 0;
+        for (double& length : length_) length = std::sqrt(length);
+        return true;
+    }
 
-        double c[COEFFICIENTS];
-        for (std::size_t j = COEFFICIENTS; j-- > 0;) {
-            double rest = entry(j, COEFFICIENTS);
-            for (std::size_t k = j + 1; k < COEFFICIENTS; ++k) rest -= entry(j, k) * c[k];
-            c[j] = rest / entry(j, j);
-        }
-        // From the round frame back: d = L s, so that the gradient is L^-T c and the Hessian
-        // L^-T ((c3, c4), (c4, c5)) L^-1.
-        out.dy = c[2] / l22;
-        out.dx = (c[1] - l21 * out.dy) / l11;
-        const double k = l21 / l22;
+    // Coefficient j from row j of the triangle, where those after it are known.
+    void solve_for(std::size_t j, double* c) {
+        double rest = entry(j, COEFFICIENTS);
+        for (std::size_t k = j + 1; k < COEFFICIENTS; ++k) rest -= entry(j, k) * c[k];
+        c[j] = rest / entry(j, j);
+    }
+
+    // From the round frame back: d = L s, so that the gradient is L^-T c and the Hessian
+    // L^-T ((c3, c4), (c4, c5)) L^-1.
+    void put_derivatives(const double* c, Derivatives& out) const {
+        out.dy = c[2] / l22_;
+        out.dx = (c[1] - l21_ * out.dy) / l11_;
+        const double k = l21_ / l22_;
         const double a = c[3] - 2 * k * c[4] + k * k * c[5], b = c[4] - k * c[5];
-        out.hessian = {a / (l11 * l11), b / (l11 * l22), c[5] / (l22 * l22)};
-        return determined;
+        out.hessian = {a / (l11_ * l11_), b / (l11_ * l22_), c[5] / (l22_ * l22_)};
     }
 
     // Householder's reflection of column j onto its first entry below the triangle, applied to the
     // columns after it. Returns the magnitude of that entry.
-    double reflect(std::size_t j, std::size_t m) {
+    double reflect(std::size_t j) {
+        const std::size_t m = stencil_.size();
         double norm = 0;
         for (std::size_t i = j; i < m; ++i) norm += entry(i, j) * entry(i, j);
         norm = std::sqrt(norm);
@@ -146,6 +243,8 @@ class QuadraticFit {
     std::vector<Index> seen_;  // the last vertex whose stencil had this one
     std::vector<Index> stencil_;
     std::vector<double> rows_;
+    double length_[COEFFICIENTS];  // of the columns
+    double l11_, l21_, l22_;       // of the frame
 };
 
 }  // namespace metrics

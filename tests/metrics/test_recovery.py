@@ -248,3 +248,22 @@ def test_neighbours_on_the_two_axes_only_are_not_enough():
     x, y = np.transpose(points)
     second = hessians(points, triangles, x * x + 3 * x * y - y * y)
     np.testing.assert_allclose(second, np.tile([2.0, 3.0, -2.0], (9, 1)), atol=1e-9)
+
+
+@pytest.mark.parametrize("angle", [0, 0.3, np.pi / 4, 2])
+def test_where_the_mesh_is_one_triangle_thick_it_is_all_but_flat_across(angle):
+    """A long strip, thick at its far end only: what is there is not asked how it bends here."""
+    x = np.linspace(0, 10, 101)
+    middle = np.c_[x[-1] + 0.1, 0.1]
+    points = np.r_[np.c_[x, 0 * x], np.c_[x, 0 * x + 0.2], middle]
+    k = np.arange(100)
+    triangles = np.r_[np.c_[k, k + 1, k + 102], np.c_[k, k + 102, k + 101], [[100, 202, 201]]]
+    u = np.sin(4 * points[:, 0])
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    second = tensor.unpack(hessians(points @ turn, triangles, u))
+    along, across = turn[0], turn[1]
+    near = (points[:, 0] > 0.3) & (points[:, 0] < 4)
+    np.testing.assert_allclose(
+        np.einsum("i,nij,j->n", along, second, along)[near], -16 * u[near], atol=2
+    )
+    assert abs(np.einsum("i,nij,j->n", across, second, across)[near]).max() < 1.6
