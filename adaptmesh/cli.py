@@ -70,7 +70,7 @@ OutlineFile = Annotated[
         exists=True,
         dir_okay=False,
         help="What to mesh: polygons (.geojson .wkt .shp), drawings (.svg .dxf), Triangle's .poly, "
-        "Gmsh's .geo, or a mesh (.msh .mesh .vtu ...) whose domain is meshed anew.",
+        "Gmsh's .geo, BAMG's .g, or a mesh (.msh .mesh .vtu ...) whose domain is meshed anew.",
     ),
 ]
 Size = Annotated[str | None, typer.Option("--size", "-s", metavar="EXPR", help=SIZE_HELP)]

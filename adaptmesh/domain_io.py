@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
+from .bamg import read_bamg_geometry
 from .coverage import domain_of_shapes
 from .domain import Domain
 from .drawings import Drawing, read_dxf, read_svg
@@ -37,6 +38,8 @@ def read_domain(path: str | os.PathLike[str]) -> Domain:
     .dxf               Lines, arcs, ellipses, polylines and splines (needs ezdxf), with their layer
                        for a name.
     .geo               A Gmsh script: points, curves, plane surfaces, physical groups.
+    .g .gmesh          A geometry of BAMG: straight and curved edges, their references as tags, and
+                       subdomains as regions.
     .poly              Triangle's format, with holes; boundary markers other than 0 become names
                        of edges, and the attributes of region seeds become names of regions.
     anything else      A mesh that `adaptmesh.read` can read: its domain.
@@ -99,6 +102,8 @@ _READERS: dict[str, Callable[[Path], Domain | Outline | Drawing | list[Shape]]] 
     ".svg": read_svg,
     ".dxf": read_dxf,
     ".geo": read_geo,
+    ".g": read_bamg_geometry,
+    ".gmesh": read_bamg_geometry,
 }
 
 OUTLINE_SUFFIXES = tuple(_READERS)
