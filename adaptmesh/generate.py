@@ -103,6 +103,28 @@ class Optimisation:
     swap_below: float = 0.5
 
 
+@dataclass(frozen=True)
+class Settling:
+    """How the last edges and triangles are mended, each change being measured before it is made.
+
+    Attributes
+    ----------
+    steps : tuple of float
+        One round for each: how far vertices are tried to be moved, as a share of the way to the
+        rim of their triangles.
+    least_quality : float
+        Triangles of lesser quality are worked on, besides edges that are not unit.
+    most_places, most_places_share : int, float
+        If there are more places to work on than the one plus this share of the vertices, nothing is
+        done: then the metric is beyond what straight edges can follow, and they are no exceptions.
+    """
+
+    steps: tuple[float, ...] = (0.3, 0.15, 0.3, 0.15, 0.3, 0.15)
+    least_quality: float = 0.6
+    most_places: int = 1000
+    most_places_share: float = 0.125
+
+
 def generate(
     domain: Domain,
     metric: Any,
@@ -161,6 +183,9 @@ def generate(
     if insert_what_was_missed(mesher, samples):
         place_along_edges(mesher, field, EdgePlacement(), budget, report)
     optimise(mesher, field, Optimisation(), budget, report)
+    report("settling", 0.97)
+    settle(mesher, field, Settling(), budget)
+    mesher.compact()
     report("done", 1.0)
     return finished_mesh(domain, mesher)
 
@@ -347,12 +372,12 @@ def optimise(
     steps = options.smoothings + len(bands)
     mesher.swap()
     for k in range(options.smoothings):
-        report("smoothing", 0.7 + 0.3 * k / steps)
+        report("smoothing", 0.7 + 0.27 * k / steps)
         mesher.smooth()
         refresh(mesher, field)
         mesher.swap()
     for k, band in enumerate(bands):
-        report("improving", 0.7 + 0.3 * (options.smoothings + k) / steps)
+        report("improving", 0.7 + 0.27 * (options.smoothings + k) / steps)
         measure_fresh_edges(mesher, field, uncut_below=np.inf)
         changes = mesher.collapse_short_edges() + mesher.split_long_edges()
         budget.check(mesher.vertex_count)
@@ -364,7 +389,23 @@ def optimise(
         refresh(mesher, field)
         mesher.swap()
     mesher.swap_worst(options.swap_below)
-    mesher.compact()
+
+
+def settle(mesher: _core.Mesher, field: ControlSpace, options: Settling, budget: Budget) -> None:
+    """Change what is still off where the change, measured with the exact metric, is better."""
+    measure_fresh_edges(mesher, field, uncut_below=np.inf)
+    settler = mesher.settler(options.least_quality)
+    for step in options.steps:
+        places = mesher.find_sites(settler)
+        most = options.most_places + options.most_places_share * mesher.vertex_count
+        if not 0 < places <= most:
+            return
+        measure_edges(settler.sampler, field)
+        mesher.set_kernels(settler, field(mesher.propose(settler, step)))
+        measure_edges(settler.sampler, field)
+        if not mesher.accept(settler):
+            return
+        budget.check(mesher.vertex_count)
 
 
 def finished_mesh(domain: Domain, mesher: _core.Mesher) -> Mesh:

@@ -5,6 +5,7 @@
 #include "adaptmesh/core/improve.hpp"
 #include "adaptmesh/core/metric_mesh.hpp"
 #include "adaptmesh/core/outline.hpp"
+#include "adaptmesh/core/settle.hpp"
 #include "adaptmesh/core/smooth.hpp"
 #include "adaptmesh/core/swap.hpp"
 #include "adaptmesh/core/triangulate.hpp"
@@ -178,6 +179,36 @@ class Mesher {
         return adaptmesh::search_active(mesh_, {shortest, longest, least_quality}, step, poll_);
     }
 
+    Settler settler(double least_quality) {
+        for (Triangle& t : mesh_.topology.triangles) t.fresh |= TO_IMPROVE;
+        return Settler(mesh_, least_quality);
+    }
+
+    std::size_t find_sites(Settler& settler) {
+        nb::gil_scoped_release release;
+        return settler.find_sites();
+    }
+
+    nb::object propose(Settler& settler, double step) {
+        std::vector<double> points;
+        {
+            nb::gil_scoped_release release;
+            points = settler.propose(step, poll_);
+        }
+        const std::size_t n = points.size() / 2;
+        return to_numpy(std::move(points), {n, 2});
+    }
+
+    void set_kernels(Settler& settler, const Tensors& tensors) {
+        nb::gil_scoped_release release;
+        settler.set_kernels([&](std::size_t i) { return tensor_in(tensors, i); });
+    }
+
+    Index accept(Settler& settler) {
+        nb::gil_scoped_release release;
+        return settler.accept();
+    }
+
     void correct_lengths(const EdgesToMeasure& edges) {
         nb::gil_scoped_release release;
         adaptmesh::correct_lengths(mesh_, edges);
@@ -268,6 +299,9 @@ void bind_mesher(nb::module_& m) {
 
     nb::class_<EdgesToMeasure>(m, "EdgesToMeasure").def_ro("sampler", &EdgesToMeasure::sampler);
 
+    nb::class_<Settler>(m, "Settler", "Changes what is off where the change, measured, is better.")
+        .def_prop_ro("sampler", &Settler::sampler, nb::rv_policy::reference_internal);
+
     nb::class_<Front>(m, "Front", "Builds unit triangles from the constraints inwards.")
         .def("wanted",
              [](const Front& front) {
@@ -303,6 +337,11 @@ void bind_mesher(nb::module_& m) {
         .def("split_long_edges", &Mesher::split_long_edges)
         .def("search_active", &Mesher::search_active, nb::arg("shortest"), nb::arg("longest"),
              nb::arg("least_quality"), nb::arg("step"))
+        .def("settler", &Mesher::settler, nb::arg("least_quality"), nb::keep_alive<0, 1>())
+        .def("find_sites", &Mesher::find_sites, nb::arg("settler"))
+        .def("propose", &Mesher::propose, nb::arg("settler"), nb::arg("step"))
+        .def("set_kernels", &Mesher::set_kernels, nb::arg("settler"), nb::arg("tensors"))
+        .def("accept", &Mesher::accept, nb::arg("settler"))
         .def("correct_lengths", &Mesher::correct_lengths, nb::arg("edges"))
         .def("compact", &Mesher::compact)
         .def("points", &Mesher::points)

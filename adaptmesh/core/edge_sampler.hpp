@@ -11,6 +11,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -59,7 +60,8 @@ class EdgeSampler {
     void add(Point a, const Tensor& metric_a, Point b, const Tensor& metric_b) {
         const Index edge = Index(edges_.size());
         edges_.push_back({a, {b.x - a.x, b.y - a.y}});
-        chords_.push_back({edge, 0, 0.0, 1.0, metric_a, metric_b});
+        chords_.push_back(chord(edge, 0, {0.0, metric_a, metrics::sqrt_det(metric_a)},
+                                {1.0, metric_b, metrics::sqrt_det(metric_b)}));
         lengths_.push_back(0.0);
     }
 
@@ -70,7 +72,7 @@ class EdgeSampler {
         std::vector<double> out;
         out.reserve(2 * chords_.size());
         for (const Chord& c : chords_) {
-            const Point p = point(c.edge, 0.5 * (c.t0 + c.t1));
+            const Point p = point(c.edge, 0.5 * (c.from.t + c.to.t));
             out.push_back(p.x), out.push_back(p.y);
         }
         return out;
@@ -109,15 +111,41 @@ class EdgeSampler {
     void cut(Index e, Index parts, std::vector<FieldPoint>& out) const {
         const double share = lengths_[e] / parts;
         Index piece = first_[e];
-        double before = 0, here = length(pieces_[piece]);
+        double before = 0, here = pieces_[piece].length;
         for (Index i = 1; i < parts; ++i) {
             const double goal = i * share;
             while (before + here < goal && piece + 1 < first_[e + 1]) {
                 before += here;
-                here = length(pieces_[++piece]);
+                here = pieces_[++piece].length;
             }
             out.push_back(point_in_piece(pieces_[piece], std::min(1.0, (goal - before) / here)));
         }
+    }
+
+    // Where on an edge, from 0 at its start to 1 at its end, half of its length is reached.
+    double middle(Index e) const {
+        double goal = 0.5 * lengths_[e];
+        Index piece = first_[e];
+        while (piece + 1 < first_[e + 1] && pieces_[piece].length < goal)
+            goal -= pieces_[piece++].length;
+        const Chord& p = pieces_[piece];
+        return p.from.t + share_in_piece(p, std::min(1.0, goal / p.length)) * (p.to.t - p.from.t);
+    }
+
+    // The integrals of 2 t s and 2 (1 - t) s along an edge, with s = sqrt(det M) and t from 0 at
+    // its start to 1 at its end: means of s over a thin triangle with its tip at the start, or at
+    // the end.
+    std::array<double, 2> moments(Index e) const {
+        double total = 0, from_start = 0;
+        for (Index i = first_[e]; i < first_[e + 1]; ++i) {
+            const Chord& p = pieces_[i];
+            const double t0 = p.from.t, t1 = p.to.t, dt = (t1 - t0) / 6;
+            const double s0 = p.from.sqrt_det, s1 = p.to.sqrt_det;
+            const double middle = 4 * std::sqrt(s0 * s1);
+            total += dt * (s0 + middle + s1);
+            from_start += dt * (t0 * s0 + 0.5 * (t0 + t1) * middle + t1 * s1);
+        }
+        return {2 * from_start, 2 * (total - from_start)};
     }
 
   private:
@@ -125,11 +153,16 @@ class EdgeSampler {
         Point from;
         Point vector;
     };
+    struct Station {  // a point on an edge, and the metric there
+        double t;
+        Tensor metric;
+        double sqrt_det;
+    };
     struct Chord {
         Index edge;
         int depth;
-        double t0, t1;
-        Tensor m0, m1;
+        Station from, to;
+        double length;
     };
 
     struct Halved {
@@ -138,12 +171,20 @@ class EdgeSampler {
         bool is_trusted;
     };
 
-    Halved halve(const Chord& c, const Tensor& middle) const {
-        const double t = 0.5 * (c.t0 + c.t1);
-        const Chord left{c.edge, c.depth + 1, c.t0, t, c.m0, middle};
-        const Chord right{c.edge, c.depth + 1, t, c.t1, middle, c.m1};
-        const double halves = length(left) + length(right);
-        const bool agree = std::abs(length(c) - halves) <= AGREEMENT * halves;
+    Chord chord(Index edge, int depth, const Station& from, const Station& to) const {
+        const Point v = edges_[edge].vector;
+        const double dt = to.t - from.t;
+        return {edge, depth, from, to,
+                metrics::length(from.metric, from.sqrt_det, to.metric, to.sqrt_det, dt * v.x,
+                                dt * v.y)};
+    }
+
+    Halved halve(const Chord& c, const Tensor& metric) const {
+        const Station middle{0.5 * (c.from.t + c.to.t), metric, metrics::sqrt_det(metric)};
+        const Chord left = chord(c.edge, c.depth + 1, c.from, middle);
+        const Chord right = chord(c.edge, c.depth + 1, middle, c.to);
+        const double halves = left.length + right.length;
+        const bool agree = std::abs(c.length - halves) <= AGREEMENT * halves;
         const double longest = c.depth < FINE_DEPTH ? longest_chord_ : LONGEST_FINE_CHORD;
         return {left, right, halves,
                 (agree && halves <= longest) || halves <= SHORTEST_CHORD || c.depth >= DEEPEST};
@@ -154,29 +195,34 @@ class EdgeSampler {
         return {e.from.x + t * e.vector.x, e.from.y + t * e.vector.y};
     }
 
-    double length(const Chord& c) const {
-        const Point v = edges_[c.edge].vector;
-        const double dt = c.t1 - c.t0;
-        return metrics::length(c.m0, c.m1, dt * v.x, dt * v.y);
-    }
-
-    // Pieces come in the order in which they were trusted: sort them along their edges.
+    // Pieces come in the order in which they were trusted: brought together by edges, and sorted
+    // along each.
     void finish() {
-        std::sort(pieces_.begin(), pieces_.end(), [](const Chord& p, const Chord& q) {
-            return p.edge != q.edge ? p.edge < q.edge : p.t0 < q.t0;
-        });
         first_.assign(edges_.size() + 1, 0);
         for (const Chord& p : pieces_) ++first_[p.edge + 1];
         for (std::size_t e = 0; e < edges_.size(); ++e) first_[e + 1] += first_[e];
+        std::vector<Index> free(first_.begin(), first_.end() - 1);
+        std::vector<Chord> sorted(pieces_.size());
+        for (const Chord& p : pieces_) sorted[free[p.edge]++] = p;
+        pieces_.swap(sorted);
+        for (std::size_t e = 0; e < edges_.size(); ++e) {
+            std::sort(pieces_.begin() + first_[e], pieces_.begin() + first_[e + 1],
+                      [](const Chord& p, const Chord& q) { return p.from.t < q.from.t; });
+        }
     }
 
     // The size is taken to be geometric along a piece: with r the ratio of the speeds at its ends,
     // the share s of its length is reached at log(1 + s (r - 1)) / log r.
-    FieldPoint point_in_piece(const Chord& p, double share) const {
+    double share_in_piece(const Chord& p, double share) const {
         const Point v = edges_[p.edge].vector;
-        const double r = std::sqrt(p.m1.q(v.x, v.y) / p.m0.q(v.x, v.y));
-        const double s = std::abs(r - 1) < 1e-6 ? share : std::log1p(share * (r - 1)) / std::log(r);
-        return {point(p.edge, p.t0 + s * (p.t1 - p.t0)), metrics::log_mean(p.m0, p.m1, s)};
+        const double r = std::sqrt(p.to.metric.q(v.x, v.y) / p.from.metric.q(v.x, v.y));
+        return std::abs(r - 1) < 1e-6 ? share : std::log1p(share * (r - 1)) / std::log(r);
+    }
+
+    FieldPoint point_in_piece(const Chord& p, double share) const {
+        const double s = share_in_piece(p, share);
+        return {point(p.edge, p.from.t + s * (p.to.t - p.from.t)),
+                metrics::log_mean(p.from.metric, p.to.metric, s)};
     }
 
     double longest_chord_;

@@ -61,16 +61,16 @@ inline EdgesToMeasure take_fresh_edges(MetricMesh& mesh, double to_cut) {
     return out;
 }
 
-// Lets the mesh know the measured lengths.
+// Lets the mesh know the measured length of an edge.
+inline void note_length(MetricMesh& mesh, Index a, Index b, double length) {
+    const double ratio = length / MetricMesh::length(mesh.vertices[a], mesh.vertices[b]);
+    if (std::abs(ratio - 1) > WORTH_CORRECTING || mesh.corrections.knows(a, b))
+        mesh.corrections.set(a, b, ratio);
+}
+
 inline void correct_lengths(MetricMesh& mesh, const EdgesToMeasure& edges) {
-    for (std::size_t i = 0; i < edges.a.size(); ++i) {
-        const double closed =
-            MetricMesh::length(mesh.vertices[edges.a[i]], mesh.vertices[edges.b[i]]);
-        const double ratio = edges.sampler.lengths()[i] / closed;
-        const bool is_known = mesh.corrections.knows(edges.a[i], edges.b[i]);
-        if (is_known || std::abs(ratio - 1) > WORTH_CORRECTING)
-            mesh.corrections.set(edges.a[i], edges.b[i], ratio);
-    }
+    for (std::size_t i = 0; i < edges.a.size(); ++i)
+        note_length(mesh, edges.a[i], edges.b[i], edges.sampler.lengths()[i]);
 }
 
 // Puts points into the mesh where their metric is far finer than the triangle they lie in knows:

@@ -28,6 +28,10 @@ constexpr Index FIXED = -2;
 constexpr double SHORTEST_UNIT = 0.70710678118654752 * (1 - 1e-9);
 constexpr double LONGEST_UNIT = 1.4142135623730950 * (1 + 1e-9);
 
+inline bool is_unit(double length) {
+    return length >= SHORTEST_UNIT && length <= LONGEST_UNIT;
+}
+
 // No vertex is put where the triangles it makes would on average have less than this metric area, a
 // third of the unit triangle's. Where the metric turns within an edge, straight edges stay long
 // however many vertices there are; this keeps the mesh from growing without end.
