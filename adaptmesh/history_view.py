@@ -80,6 +80,8 @@ def draw(history: History) -> Figure:
 
 
 def _draw_against_vertices(axes: Axes, history: History) -> None:
+    from matplotlib.ticker import NullFormatter
+
     counts = history.counts
     for name, errors in history.errors.items():
         (line,) = axes.loglog(counts, errors, "o-", ms=4, label=name)
@@ -88,6 +90,7 @@ def _draw_against_vertices(axes: Axes, history: History) -> None:
             ends = np.array([counts.min(), counts.max()], float)
             axes.loglog(ends, last * (counts[-1] / ends) ** ORDER, ":", color=line.get_color())
     axes.plot([], [], "k:", label="1 / vertices")
+    axes.xaxis.set_minor_formatter(NullFormatter())  # they overlap
     axes.set(xlabel="vertices", ylabel="estimate of error")
     axes.legend(frameon=False)
 

@@ -15,6 +15,7 @@ EXAMPLES = sorted((ROOT / "examples").glob("[0-9]*.py"))
 PAGES = {
     "start": (6, 2),
     "domains": (6, 2),
+    "loop": (7, 3),
     "repair": (3, 1),
     "metrics": (6, 2),
     "boundaries": (3, 0),
