@@ -217,11 +217,21 @@ class Domain:
         return domain
 
     @classmethod
-    def of_mesh(cls, mesh: Mesh) -> Domain:
-        """The domain that a mesh covers, from its constrained edges, regions and names."""
+    def of_mesh(cls, mesh: Mesh, corner_angle: float | None = None) -> Domain:
+        """The domain that a mesh covers, from its constrained edges, regions and names.
+
+        Parameters
+        ----------
+        mesh : Mesh
+        corner_angle : float, optional
+            In degrees. If given, the border is taken to be smooth where it turns by at most this
+            from edge to edge: it becomes splines through its vertices, from corner to corner, and
+            stays straight where several edges lie on one line. If not, it is the polygon that the
+            mesh has.
+        """
         from .outline import domain_of_mesh
 
-        return domain_of_mesh(mesh)
+        return domain_of_mesh(mesh, corner_angle)
 
     def with_periodic(
         self,

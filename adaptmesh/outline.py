@@ -9,11 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .curves import Curve
 from .domain import Domain
 from .domain_input import Label, labelled
 from .errors import DomainError
 from .invariants.subject import edge_keys
 from .mesh import Mesh
+from .smoothed import smooth_curves
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -25,35 +27,46 @@ STRAIGHT = 1e-12
 OUTSIDE = -(2**40)  # a number that no region has
 
 
-def domain_of_mesh(mesh: Mesh) -> Domain:
+def domain_of_mesh(mesh: Mesh, corner_angle: float | None = None) -> Domain:
     """Corners, segments, holes, regions and names of a mesh.
 
     Chains of constrained edges with one name, between the same two regions, become one segment
     where they are straight (to `STRAIGHT` of the extent); vertices on them are dropped. Curved
-    boundaries stay as the mesh has them.
+    boundaries stay as the mesh has them, or become the curves of `smooth_curves`.
     """
     if not len(mesh.triangles):
         raise DomainError("the mesh has no triangles, so it covers no domain")
     edges, tags = with_interfaces(mesh)
     segments, segment_tags = [], []
+    curves: list[Curve] = []
+    curve_tags: list[int] = []
+    degree = np.bincount(edges.ravel())
     tolerance = STRAIGHT * float(np.ptp(mesh.points, axis=0).max())
     beside = regions_beside(mesh.triangles, mesh.regions, edges, len(mesh.points))
     for chain, tag in _chains(edges, tags, np.sort(beside, axis=1)):
         corners = _corners(mesh.points, chain, tolerance)
         segments += list(itertools.pairwise(corners))
         segment_tags += [tag] * (len(corners) - 1)
+        if corner_angle is not None:
+            ring = chain[0] == chain[-1] and degree[chain[0]] == 2
+            smooth = smooth_curves(mesh.points, chain, corners, corner_angle, ring)
+            curves += smooth
+            curve_tags += [tag] * len(smooth)
 
     used, renumbered = np.unique(np.array(segments), return_inverse=True)
     points, pairs = mesh.points[used], renumbered.reshape(-1, 2).astype(np.int32)
-    tag_of = np.array(segment_tags)
-    return Domain(
-        points,
-        pairs,
-        holes=_hole_points(mesh, points, pairs),
-        regions=_region_points(mesh, edges),
-        names=labelled(tag_of),
+    holes, regions = _hole_points(mesh, points, pairs), _region_points(mesh, edges)
+    if corner_angle is None:
+        names = labelled(np.array(segment_tags))
+        return Domain(points, pairs, holes, regions, names, mesh.names, mesh.region_names)
+    return Domain.from_curves(
+        curves,
+        names=labelled(np.array(curve_tags)),
+        holes=holes,
+        regions=regions,
         tags=mesh.names,
         region_tags=mesh.region_names,
+        corner_angle=0.0,  # every end of these curves is a corner
     )
 
 
