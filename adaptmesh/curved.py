@@ -74,42 +74,52 @@ class Curved:
     def areas_beside(self, run: NDArray[np.integer], u: Floats) -> Floats:
         """Areas between chords, given by run (k,) and parameters (k, 2), and their curves.
 
-        Positive where the curve bends to the right of its chord; by Gauss's quadrature of
-        (p - p0) x dp / 2, on four parts between knots of the curve.
+        Chords of a run may not overlap. Positive where the curve bends to the right of its chord.
         """
         out = np.zeros(len(run))
-        x, w = 0.5 * (GAUSS[0] + 1), 0.5 * GAUSS[1]
-        for k in range(len(run)):
-            line, (u0, u1) = self.runs[run[k]], u[k]
-            inner = line.knots[(line.knots > u0) & (line.knots < u1)]
-            ends = np.concatenate([[u0], inner, [u1]])
-            steps = np.concatenate([np.linspace(a, b, 5)[:-1] for a, b in itertools.pairwise(ends)])
-            du = np.diff(steps, append=u1)
-            at = steps[:, None] + x * du[:, None]
-            p = line.point(at.ravel()) - line.point(u[k, :1])
-            d = line.derivative(at.ravel())
-            cross = (p[:, 0] * d[:, 1] - p[:, 1] * d[:, 0]).reshape(at.shape)
-            out[k] = 0.5 * (cross @ w) @ du + _area_of_gaps(line, ends)
+        order = np.lexsort((u[:, 0], run))
+        first = np.flatnonzero(np.diff(run[order], prepend=-1))
+        for mine in np.split(order, first)[1:]:
+            out[mine] = _areas_beside(self.runs[run[mine[0]]], u[mine])
         return out
 
 
-def _area_of_gaps(line: Run, ends: Floats) -> float:
-    """What joining adds to the area beside a chord: the vertices may lie off the ends of curves.
+def _areas_beside(line: Run, u: Floats) -> Floats:
+    """Areas between chords (k, 2) of a run, in order, and the curve.
 
-    ::
+    By Gauss's quadrature of (p - p0) x dp / 2, p0 where the chord begins, on halves of what is
+    between knots of the curve. Joining may have moved vertices off the ends of curves::
 
           vertex          the way from vertex to vertex, as seen from the first, jumps where it
             |             comes onto a curve, from one curve to the next, and off the last
             '-- curve
     """
-    part = np.floor(0.5 * (ends[:-1] + ends[1:])).astype(np.intp)
-    onto, off = (
-        np.array([line.parts[k].point(u - k)[0] for k, u in zip(part, at, strict=True)])
-        for at in (ends[:-1], ends[1:])
-    )
-    first, last = line.point(ends[[0, -1]])
-    p, q = np.vstack([first, off]) - first, np.vstack([onto, last]) - first
-    return float(0.5 * np.sum(p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]))
+    ends = np.unique(np.concatenate([u.ravel(), line.knots]))
+    ends = np.sort(np.concatenate([ends, 0.5 * (ends[1:] + ends[:-1])]))
+    middle = 0.5 * (ends[1:] + ends[:-1])
+    chord = np.searchsorted(u[:, 0], middle) - 1
+    inside = (chord >= 0) & (middle < u[chord, 1])
+    chord, part = chord[inside], middle[inside].astype(np.intp)
+    start, du = ends[:-1][inside], np.diff(ends)[inside]
+
+    p0, p1 = line.point(u[:, 0]), line.point(u[:, 1])
+    x, w = 0.5 * (GAUSS[0] + 1), 0.5 * GAUSS[1]
+    at = (start[:, None] + x * du[:, None]).ravel()
+    p = line.point(at) - np.repeat(p0[chord], len(x), axis=0)
+    swept = cross(p, line.derivative(at)).reshape(-1, len(x)) @ w * du
+
+    onto, off = (line.point_of_part(part, at) for at in (start, start + du))
+    is_last = np.append(chord[1:] != chord[:-1], True)
+    to = np.where(is_last[:, None], p1[chord], np.roll(onto, -1, axis=0))
+    jumps = cross(off - p0[chord], to - p0[chord])
+    out: Floats = 0.5 * np.bincount(chord, swept + jumps, minlength=len(u)).astype(np.float64)
+    return out
+
+
+def cross(p: Floats, q: Floats) -> Floats:
+    """Areas of the parallelograms of vectors (k, 2)."""
+    out: Floats = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
+    return out
 
 
 class Skeleton(NamedTuple):

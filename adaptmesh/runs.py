@@ -65,17 +65,25 @@ class Run:
 
     def point(self, u: Floats) -> Floats:
         """Points (n, 2) at u (n,)."""
-        out = self._of_parts(Curve.point, u)
+        out = self.point_of_part(self._parts_at(u), u)
         out[u == 0] = self.start
         out[u == self.length] = self.end
         return out
 
     def derivative(self, u: Floats) -> Floats:
         """Derivatives by u (n, 2) at u (n,)."""
-        return self._of_parts(Curve.derivative, u)
+        return self._of_parts(Curve.derivative, self._parts_at(u), u)
 
-    def _of_parts(self, values: Callable[[Curve, Floats], Floats], u: Floats) -> Floats:
-        part = np.clip(u.astype(np.intp), 0, len(self.parts) - 1)
+    def point_of_part(self, part: Index, u: Floats) -> Floats:
+        """Points (n, 2) at u (n,) of the curves as they are, which joining may have left apart."""
+        return self._of_parts(Curve.point, part, u)
+
+    def _parts_at(self, u: Floats) -> Index:
+        return np.clip(u.astype(np.intp), 0, len(self.parts) - 1)
+
+    def _of_parts(
+        self, values: Callable[[Curve, Floats], Floats], part: Index, u: Floats
+    ) -> Floats:
         out = np.empty((len(u), 2))
         for k in np.unique(part):
             here = part == k
@@ -98,9 +106,9 @@ def _each(
 ) -> Floats:
     out = np.empty((len(u), 2))
     order = np.argsort(run, kind="stable")
-    numbers, first = np.unique(run[order], return_index=True)
-    for r, mine in zip(numbers, np.split(order, first[1:]), strict=True):
-        out[mine] = values(runs[r], u[mine])
+    first = np.flatnonzero(np.diff(run[order], prepend=-1))
+    for mine in np.split(order, first)[1:]:
+        out[mine] = values(runs[run[mine[0]]], u[mine])
     return out
 
 

@@ -230,3 +230,11 @@ def test_chords_across_thin_layers_are_unit(curves, metric):
     """
     report = am.measure(am.generate(Domain.from_curves(curves), metric), metric)
     assert report.unit_fraction > 0.99
+
+
+def test_many_holes():
+    """Work goes with the number of curves and chords, not with their square."""
+    holes = [Circle((i, j), 0.3) for i in range(8) for j in range(8)]
+    domain = Domain.from_curves([*holes, Circle((3.5, 3.5), 6)])
+    assert domain.area == pytest.approx(np.pi * (36 - 64 * 0.09), rel=1e-12)
+    am.generate(domain, 0.3).validate().raise_if_invalid()
