@@ -1,5 +1,7 @@
 """Types of the compiled core; see the C++ headers in core/ for what each thing does."""
 
+from typing import overload
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -8,6 +10,8 @@ Ints = NDArray[np.int32]
 Bools = NDArray[np.bool_]
 
 MAX_VERTICES: int
+FREE: int
+FIXED: int
 
 class Fault(Exception):  # noqa: N818
     """What is wrong with points and segments: (kind, i, j, x, y)."""
@@ -47,6 +51,7 @@ class Front:
     def feed(self, tensors: Floats) -> None: ...
 
 class Mesher:
+    @overload
     def __init__(
         self,
         points: Floats,
@@ -56,6 +61,32 @@ class Mesher:
         seeds: Floats,
         nesting: bool,
     ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        points: Floats,
+        tensors: Floats,
+        triangles: Ints,
+        labels: Ints,
+        edges: Ints,
+        held_by: Ints,
+    ) -> None: ...
+    def recut(
+        self,
+        first_stop: Ints,
+        stops: Ints,
+        stop_places: Floats,
+        first_cut: Ints,
+        cuts: Floats,
+        tensors: Floats,
+        cut_places: Floats,
+        segments: Ints,
+    ) -> tuple[Ints, Floats, Ints]: ...
+    def set_constrained(self, edges: Ints, segments: Ints) -> None: ...
+    def edges(self) -> tuple[Ints, Floats, Bools]: ...
+    def corners_below(self, quality: float) -> Ints: ...
+    def hold_all_but(self, in_zone: Bools) -> int: ...
+    def remove_free(self, rounds: int) -> int: ...
     def cut_outline(
         self, ends: Ints, segments: Ints, cuts: Floats, tensors: Floats, piece: Ints
     ) -> Bools: ...

@@ -1,4 +1,4 @@
-"""A mesh and a metric on it: the domain of the mesh, meshed again."""
+"""A mesh and a metric on it: the domain of the mesh, meshed again, or the mesh edited."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ import numpy as np
 import metrics
 from metrics import ControlSpace
 
+from .chains import vertices_at
 from .domain import Domain
 from .frozen import frozen_domain
-from .generate import Progress, generate
+from .generate import Budget, Progress, Samples, generate, predict
+from .local import Editing, edited
 from .mesh import Mesh
 
 
@@ -21,15 +23,16 @@ def adapt(
     mesh: Mesh,
     metric: Any,
     *,
+    keep: bool = False,
     frozen: Iterable[str] = (),
     placement: str = "front",
     max_vertices: int = 5_000_000,
     progress: Progress | None = None,
 ) -> Mesh:
-    """Mesh the domain of a mesh again, for a metric given at its vertices.
+    """Fit a mesh to a metric, given at its vertices or as a function.
 
-    The domain, its names and its regions are kept; no vertex is, but for its corners. The old mesh
-    carries the metric (P1, log-Euclidean) while the new one is made.
+    The domain, its names and its regions are kept. The old mesh carries a metric at its vertices
+    (P1, log-Euclidean) while the new one is made.
 
     Parameters
     ----------
@@ -38,10 +41,17 @@ def adapt(
     metric : array_like, number, callable, or control space
         Values at the vertices: sizes (n,), packed metrics (n, 3) = (m11, m12, m22), or tensors
         (n, 2, 2); or anything else that `generate` takes.
+    keep : bool, optional
+        False: the domain is meshed again, and no vertex but its corners is kept. True: the mesh is
+        edited where it does not fit the metric, around edges that are not unit, and all else stays
+        as it is: for time steps, where the metric changes little or in few places. `Mesh.kept` of
+        the new mesh says which vertices were kept. The domain is meshed again all the same if most
+        of the vertices would have to go, if it has curves or periodic boundaries, or if the
+        constrained edges of the mesh are not those of the domain.
     frozen : sequence of str, optional
         Names of boundaries and lines whose edges stay as the mesh has them, to fit a neighbour.
     placement, max_vertices, progress
-        As in `generate`.
+        As in `generate`; `placement` is of no account where the mesh is edited.
 
     Returns
     -------
@@ -50,8 +60,21 @@ def adapt(
     domain = mesh.domain or Domain.of_mesh(mesh)
     field = control_space_on(mesh, metric)
     meshed = frozen_domain(domain, mesh, frozen) if frozen else domain
-    new = generate(meshed, field, placement=placement, max_vertices=max_vertices, progress=progress)
-    return replace(new, domain=domain)
+    new = _edited(mesh, meshed, field, max_vertices, progress) if keep else None
+    if new is None:
+        new = generate(
+            meshed, field, placement=placement, max_vertices=max_vertices, progress=progress
+        )
+    return replace(new, domain=domain, kept=vertices_at(mesh, new.points) if keep else None)
+
+
+def _edited(
+    mesh: Mesh, domain: Domain, field: ControlSpace, max_vertices: int, progress: Progress | None
+) -> Mesh | None:
+    samples = Samples(field)
+    budget = Budget(max_vertices, predict(domain, samples))
+    budget.check_prediction()
+    return edited(mesh, domain, samples, Editing(), budget, progress or (lambda stage, f: None))
 
 
 def control_space_on(mesh: Mesh, metric: Any) -> ControlSpace:

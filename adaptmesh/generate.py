@@ -20,6 +20,7 @@ from .errors import BudgetError, DomainError
 from .mesh import Mesh
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
 Progress = Callable[[str, float], None]
 
 # A sample with this many times the density sqrt(det M) of all corners of its triangle was missed.
@@ -187,7 +188,7 @@ def generate(
     settle(mesher, field, Settling(), budget)
     mesher.compact()
     report("done", 1.0)
-    return finished_mesh(domain, mesher)
+    return finished_mesh(domain, mesher, domain.region_of_label(mesher.labels()))
 
 
 def predict(domain: Domain, metric: Any) -> int:
@@ -408,12 +409,12 @@ def settle(mesher: _core.Mesher, field: ControlSpace, options: Settling, budget:
         budget.check(mesher.vertex_count)
 
 
-def finished_mesh(domain: Domain, mesher: _core.Mesher) -> Mesh:
+def finished_mesh(domain: Domain, mesher: _core.Mesher, regions: Ints) -> Mesh:
     edges, segment = mesher.constrained_edges()
     return Mesh(
         points=mesher.points(),
         triangles=mesher.triangles(),
-        regions=domain.region_of_label(mesher.labels()),
+        regions=regions,
         edges=edges,
         edge_tags=domain.segment_tags[segment],
         names=domain.names,

@@ -50,6 +50,9 @@ class Mesh:
     domain : Domain, optional
         What was meshed. `adapt` meshes it again; a mesh without one (read from a file) gets it
         from its constrained edges.
+    kept : (n,) array of int32, optional
+        The number that each vertex had in the mesh it was made from by ``adapt(..., keep=True)``,
+        -1 for those that are new or have moved.
     """
 
     points: Floats
@@ -60,6 +63,7 @@ class Mesh:
     names: Mapping[str, int] = field(default_factory=dict)
     region_names: Mapping[str, int] = field(default_factory=dict)
     domain: Domain | None = None
+    kept: Ints | None = None
 
     def __post_init__(self) -> None:
         def put(name: str, value: object) -> None:
@@ -72,6 +76,8 @@ class Mesh:
         put("regions", _frozen(regions, np.int32, (len(self.triangles),)))
         tags = self.edge_tags if np.size(self.edge_tags) else np.zeros(len(self.edges))
         put("edge_tags", _frozen(tags, np.int32, (len(self.edges),)))
+        if self.kept is not None:
+            put("kept", _frozen(self.kept, np.int32, (len(self.points),)))
         put("names", MappingProxyType(dict(self.names)))
         put("region_names", MappingProxyType(dict(self.region_names)))
 

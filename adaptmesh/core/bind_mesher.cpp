@@ -3,12 +3,15 @@
 #include "adaptmesh/core/edges.hpp"
 #include "adaptmesh/core/front.hpp"
 #include "adaptmesh/core/improve.hpp"
+#include "adaptmesh/core/load.hpp"
 #include "adaptmesh/core/metric_mesh.hpp"
 #include "adaptmesh/core/outline.hpp"
+#include "adaptmesh/core/recut.hpp"
 #include "adaptmesh/core/settle.hpp"
 #include "adaptmesh/core/smooth.hpp"
 #include "adaptmesh/core/swap.hpp"
 #include "adaptmesh/core/triangulate.hpp"
+#include "adaptmesh/core/zone.hpp"
 
 using namespace adaptmesh;
 
@@ -84,6 +87,28 @@ class Mesher {
             mesh_.vertices.push_back(Vertex::make(at[i], tensor_in(tensors, i), FIXED));
     }
 
+    // A mesh that is already there: the label of each triangle, its constrained edges, and what
+    // holds each vertex (FREE, FIXED, or a segment).
+    Mesher(const Points& points, const Tensors& tensors, const IndexTriples& triangles,
+           const Indices& labels, const IndexPairs& edges, const Indices& held_by) {
+        const std::size_t n = points.shape(0);
+        expect_rows(tensors.shape(0), n, "tensors");
+        expect_rows(held_by.shape(0), n, "held_by");
+        expect_rows(labels.shape(0), triangles.shape(0), "labels");
+        std::vector<std::array<Index, 3>> corners(triangles.shape(0));
+        for (std::size_t t = 0; t < corners.size(); ++t)
+            corners[t] = {triangles(t, 0), triangles(t, 1), triangles(t, 2)};
+        const std::vector<Index> label(labels.data(), labels.data() + labels.shape(0));
+        const std::vector<Segment> locked = to_segments(edges);
+
+        nb::gil_scoped_release release;
+        mesh_.topology = load(Index(n), corners, label, locked);
+        for (std::size_t i = 0; i < n; ++i) {
+            mesh_.vertices.push_back(
+                Vertex::make({points(i, 0), points(i, 1)}, tensor_in(tensors, i), held_by(i)));
+        }
+    }
+
     // Cuts the constrained edges with these ends, pieces of these segments; of each cut, `piece`
     // tells on which it lies; the cuts of a piece are in order from its first end. Returns of each
     // piece whether all its cuts could be made.
@@ -108,7 +133,81 @@ class Mesher {
         return to_numpy(std::move(cutter.is_complete), {pieces.size()}).attr("view")("bool");
     }
 
-    std::size_t vertex_count() const { return mesh_.vertices.size(); }
+    // Cuts stretches of the outline anew: stretch s has the stops from first_stop[s] on, its ends
+    // and the vertices between that go, and the cuts from first_cut[s] on; places give their order
+    // along it. Returns the vertices of all stretches as they are now, their places, and where each
+    // stretch begins.
+    nb::tuple recut(const Indices& first_stop, const Indices& stops, const Values& stop_places,
+                    const Indices& first_cut, const Points& cuts, const Tensors& tensors,
+                    const Values& cut_places, const Indices& segments) {
+        const std::size_t n = segments.shape(0);
+        expect_rows(first_stop.shape(0), n + 1, "first_stop");
+        expect_rows(first_cut.shape(0), n + 1, "first_cut");
+        expect_rows(stop_places.shape(0), stops.shape(0), "places of stops");
+        expect_rows(tensors.shape(0), cuts.shape(0), "tensors");
+        expect_rows(cut_places.shape(0), cuts.shape(0), "places of cuts");
+        std::vector<Index> now, begins = {0};
+        std::vector<double> places;
+        {
+            nb::gil_scoped_release release;
+            Recutter recutter(mesh_);
+            for (std::size_t s = 0; s < n; ++s) {
+                std::vector<Recutter::Stop> stretch;
+                for (Index i = first_stop(s); i < first_stop(s + 1); ++i)
+                    stretch.push_back({stop_places(i), stops(i), true});
+                std::vector<Vertex> made;
+                for (Index i = first_cut(s); i < first_cut(s + 1); ++i)
+                    made.push_back(
+                        Vertex::make({cuts(i, 0), cuts(i, 1)}, tensor_in(tensors, i), segments(s)));
+                recutter.recut(stretch, made, cut_places.data() + first_cut(s));
+                for (const Recutter::Stop& stop : stretch) {
+                    now.push_back(stop.vertex);
+                    places.push_back(stop.place);
+                }
+                begins.push_back(Index(now.size()));
+            }
+        }
+        const std::size_t m = now.size();
+        return nb::make_tuple(to_numpy(std::move(now), {m}), to_numpy(std::move(places), {m}),
+                              to_numpy(std::move(begins), {n + 1}));
+    }
+
+    // The constrained edges of a mesh that was loaded, and the segment of each.
+    void set_constrained(const IndexPairs& edges, const Indices& segments) {
+        expect_rows(segments.shape(0), edges.shape(0), "segments");
+        constrained_.clear();
+        for (std::size_t i = 0; i < segments.shape(0); ++i)
+            constrained_.push_back({edges(i, 0), edges(i, 1), segments(i)});
+    }
+
+    // All edges (e, 2), their lengths, and whether they are constrained.
+    nb::tuple edges() const {
+        EdgeList list = edge_list(mesh_);
+        const std::size_t n = list.lengths.size();
+        return nb::make_tuple(to_numpy(std::move(list.ends), {n, 2}),
+                              to_numpy(std::move(list.lengths), {n}),
+                              to_numpy(std::move(list.is_constrained), {n}).attr("view")("bool"));
+    }
+
+    nb::object corners_below(double quality) const {
+        std::vector<Index> corners = adaptmesh::corners_below(mesh_, quality);
+        const std::size_t n = corners.size();
+        return to_numpy(std::move(corners), {n});
+    }
+
+    Index hold_all_but(const Flags& in_zone) {
+        expect_rows(in_zone.shape(0), mesh_.vertices.size(), "in_zone");
+        return adaptmesh::hold_all_but(mesh_, [&](Index v) { return in_zone(v); });
+    }
+
+    Index remove_free(int rounds) {
+        nb::gil_scoped_release release;
+        const Index left = Remover(mesh_).remove_free(rounds, poll_);
+        mesh_.drop_dead_triangles();
+        return left;
+    }
+
+    Index vertex_count() const { return mesh_.topology.living_vertex_count(); }
 
     EdgesToMeasure fresh_edges(double uncut_below) {
         nb::gil_scoped_release release;
@@ -224,7 +323,7 @@ class Mesher {
     nb::object points() const {
         std::vector<double> out;
         for (const Vertex& v : mesh_.vertices) out.push_back(v.at.x), out.push_back(v.at.y);
-        return to_numpy(std::move(out), {vertex_count(), 2});
+        return to_numpy(std::move(out), {mesh_.vertices.size(), 2});
     }
 
     // Where the metric was interpolated and wants to be evaluated.
@@ -318,6 +417,18 @@ void bind_mesher(nb::module_& m) {
                       const Points&, bool>(),
              nb::arg("points"), nb::arg("tensors"), nb::arg("segments"), nb::arg("holes"),
              nb::arg("seeds"), nb::arg("nesting"))
+        .def(nb::init<const Points&, const Tensors&, const IndexTriples&, const Indices&,
+                      const IndexPairs&, const Indices&>(),
+             nb::arg("points"), nb::arg("tensors"), nb::arg("triangles"), nb::arg("labels"),
+             nb::arg("edges"), nb::arg("held_by"))
+        .def("recut", &Mesher::recut, nb::arg("first_stop"), nb::arg("stops"),
+             nb::arg("stop_places"), nb::arg("first_cut"), nb::arg("cuts"), nb::arg("tensors"),
+             nb::arg("cut_places"), nb::arg("segments"))
+        .def("set_constrained", &Mesher::set_constrained, nb::arg("edges"), nb::arg("segments"))
+        .def("edges", &Mesher::edges)
+        .def("corners_below", &Mesher::corners_below, nb::arg("quality"))
+        .def("hold_all_but", &Mesher::hold_all_but, nb::arg("in_zone"))
+        .def("remove_free", &Mesher::remove_free, nb::arg("rounds"))
         .def("cut_outline", &Mesher::cut_outline, nb::arg("ends"), nb::arg("segments"),
              nb::arg("cuts"), nb::arg("tensors"), nb::arg("piece"))
         .def_prop_ro("vertex_count", &Mesher::vertex_count)
@@ -350,5 +461,7 @@ void bind_mesher(nb::module_& m) {
         .def("triangles", &Mesher::triangles)
         .def("labels", &Mesher::labels)
         .def("constrained_edges", &Mesher::constrained_edges);
+    m.attr("FREE") = FREE;
+    m.attr("FIXED") = FIXED;
     m.attr("MAX_VERTICES") = MAX_TRIANGLES / 2;
 }

@@ -28,6 +28,9 @@ using IndexTriples =
     nb::ndarray<const std::int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Indices = nb::ndarray<const std::int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
+using Flags = nb::ndarray<const bool, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Values = nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+
 inline std::vector<adaptmesh::Point> to_points(const Points& array) {
     static_assert(sizeof(adaptmesh::Point) == 2 * sizeof(double));
     std::vector<adaptmesh::Point> points(array.shape(0));

@@ -108,7 +108,7 @@ Index insert_along_edges(MetricMesh& mesh, const EdgesToMeasure& edges, double l
         if (length < long_edge) continue;
         const Place place = mesh.topology.find_edge(edges.a[e], edges.b[e]);
         if (place.triangle == NONE) continue;
-        if (Index(mesh.vertices.size()) >= most_vertices) return NONE;
+        if (mesh.topology.living_vertex_count() >= most_vertices) return NONE;
         points.clear();
         edges.sampler.cut(e, Index(unit_parts(std::min(length, LONGEST_EDGE))), points);
         Index near = place.triangle;

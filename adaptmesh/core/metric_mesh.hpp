@@ -19,9 +19,11 @@ namespace adaptmesh {
 
 using metrics::Tensor;
 
-// What holds a vertex: nothing, everything, or the segment (its number) it may slide along.
+// What holds a vertex: nothing, everything, only that it is not to be edited for now, or the
+// segment (its number) it may slide along.
 constexpr Index FREE = -1;
 constexpr Index FIXED = -2;
+constexpr Index HELD = -3;
 
 // Unit edges are those between 1/sqrt(2) and sqrt(2), both included whatever the rounding: a grid
 // of squares of side one is a unit mesh.
@@ -107,10 +109,15 @@ class MetricMesh {
         return sides / (2 * std::sqrt(3.0) * area2 * std::sqrt(det));
     }
 
+    // Whoever walks through all triangles need not look out for dead ones then.
+    void drop_dead_triangles() {
+        topology.keep_triangles([](const Triangle& t) { return t.v[0] != DEAD; });
+    }
+
     // Drops dead triangles and the vertices that are left without any; returns the new number of
     // each vertex, NONE for the dropped.
     std::vector<Index> compact() {
-        topology.keep_triangles([](const Triangle& t) { return t.v[0] != DEAD; });
+        drop_dead_triangles();
         std::vector<Index> name(vertices.size(), NONE);
         Index kept = 0;
         for (Index v = 0; v < Index(vertices.size()); ++v) {

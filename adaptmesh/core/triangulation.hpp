@@ -86,6 +86,7 @@ class Triangulation {
 
     Index triangle_count() const { return Index(triangles.size()); }
     Index vertex_count() const { return Index(triangle_at_.size()) - 1; }
+    Index living_vertex_count() const { return vertex_count() - collapsed_; }
 
     // One triangle that has the vertex (which one is not promised); NONE for a vertex without any.
     Index triangle_at(Index vertex) const { return triangle_at_[vertex + 1]; }
@@ -256,6 +257,7 @@ class Triangulation {
             T.v[0] = DEAD;
         }
         set_triangle_at(from, NONE);
+        ++collapsed_;
         for (Place place : around) {
             if (!is_dead(place.triangle)) set_triangle_at(to, place.triangle);
         }
@@ -328,6 +330,7 @@ class Triangulation {
             if (name[v] != NONE) set_triangle_at(name[v], triangle_at(v));
         }
         triangle_at_.resize(kept + 1);
+        collapsed_ = 0;
     }
 
     // Drops the triangles that `keep` refuses. Their place becomes NONE in those that stay, and a
@@ -389,6 +392,7 @@ class Triangulation {
 
     std::vector<Index> triangle_at_ = {NONE};  // shifted by one: the ghost vertex has a place too
     std::uint32_t stamp_ = 0;
+    Index collapsed_ = 0;  // vertices that are gone but still have a number
 };
 
 }  // namespace adaptmesh

@@ -1,0 +1,101 @@
+// Cutting a stretch of the outline anew, in a mesh that is already there.
+//
+//     a----o-----o--o----b        a stretch of the outline, with vertices o between,
+//     a----o--n--o--on---b        gets its new vertices n first,
+//     a-------n------n---b        and then each o is pulled into its nearer neighbour
+//
+// Places along the stretch (numbers that grow from a to b) give the order; nothing here knows
+// whether it is straight.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "adaptmesh/core/metric_mesh.hpp"
+#include "adaptmesh/core/swap.hpp"
+
+namespace adaptmesh {
+
+class Recutter {
+  public:
+    struct Stop {
+        double place;
+        Index vertex;
+        bool is_old;
+    };
+
+    explicit Recutter(MetricMesh& mesh) : mesh_(mesh) {}
+
+    // `stretch` begins and ends with the vertices that stay; the others are old. The cuts are in
+    // order. Cuts and removals that would make a triangle that is not positive are left out.
+    void recut(std::vector<Stop>& stretch, const std::vector<Vertex>& cuts, const double* places) {
+        bool complete = true;
+        for (std::size_t i = 0; i < cuts.size(); ++i)
+            complete &= try_cut(stretch, cuts[i], places[i]);
+        for (std::size_t i = 1; i + 1 < stretch.size();) {
+            if (stretch[i].is_old && try_remove(stretch, i, complete))
+                stretch.erase(stretch.begin() + std::ptrdiff_t(i));
+            else
+                ++i;
+        }
+    }
+
+  private:
+    bool try_cut(std::vector<Stop>& stretch, const Vertex& cut, double place) {
+        const auto after = std::upper_bound(stretch.begin(), stretch.end(), place,
+                                            [](double p, const Stop& s) { return p < s.place; });
+        if (after == stretch.begin() || after == stretch.end()) return false;
+        const Index a = (after - 1)->vertex, b = after->vertex;
+        Place edge = mesh_.topology.find_edge(a, b);
+        if (edge.triangle == NONE) edge = mesh_.topology.find_edge(b, a);
+        if (edge.triangle == NONE || !mesh_.stays_positive(edge, cut.at)) return false;
+        const Index across = mesh_.triangle(edge.triangle).n[edge.slot];
+        if (across != NONE && !mesh_.stays_positive({triangle_of(across), slot_of(across)}, cut.at))
+            return false;
+        const Index v = put_on_edge(mesh_, edge, cut, around_);
+        stretch.insert(after, {place, v, false});
+        return true;
+    }
+
+    // With all cuts made, what goes leaves no edge too long.
+    bool try_remove(const std::vector<Stop>& stretch, std::size_t i, bool complete) {
+        const Stop &before = stretch[i - 1], &here = stretch[i], &beyond = stretch[i + 1];
+        if (!complete && MetricMesh::length(mesh_.vertices[before.vertex],
+                                            mesh_.vertices[beyond.vertex]) > LONGEST_UNIT)
+            return false;
+        const bool is_nearer_before = here.place - before.place < beyond.place - here.place;
+        const Index nearer = is_nearer_before ? before.vertex : beyond.vertex;
+        const Index farther = is_nearer_before ? beyond.vertex : before.vertex;
+        return try_pull(here.vertex, nearer) || try_pull(here.vertex, farther);
+    }
+
+    // Pulls a vertex of the outline into its neighbour on it. Its ball is open at the border of the
+    // domain, and closed on an inner line.
+    bool try_pull(Index from, Index to) {
+        mesh_.topology.ball(from, ball_);
+        for (Place place : ball_) {
+            const Triangle& T = mesh_.triangle(place.triangle);
+            const Index p = T.v[next(place.slot)], q = T.v[prev(place.slot)];
+            if (p != to && q != to) {
+                if (!mesh_.is_positive(to, p, q)) return false;
+            } else if (is_ear(T, place.slot, p == to)) {
+                return false;
+            }
+        }
+        mesh_.topology.collapse(ball_, from, to);
+        return true;
+    }
+
+    // A triangle that hangs on the mesh by the edge that would vanish alone.
+    static bool is_ear(const Triangle& T, int slot, bool to_is_next) {
+        return T.n[slot] == NONE && T.n[to_is_next ? next(slot) : prev(slot)] == NONE;
+    }
+
+    MetricMesh& mesh_;
+    std::vector<Place> ball_;
+    std::vector<Index> around_;
+};
+
+}  // namespace adaptmesh

@@ -1,0 +1,151 @@
+"""Editing a mesh where it does not fit a metric, and nowhere else.
+
+1. Load: the mesh as it is becomes one that can be edited; the metric is evaluated at its vertices.
+2. Outline: rows of edges along the boundary are cut anew where they are not unit.
+3. Zone: what touches an edge that is not unit, and its neighbours, is removed; all else is held.
+4. Fill: as in `generate`, ahead of a front (which passes what it finds good) and along edges; the
+   new vertices are smoothed.
+
+Removing what is off and filling the gaps makes a better mesh than collapsing and splitting edges:
+after many steps it still has the count and the quality of a fresh one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metrics import ControlSpace
+
+from . import _core
+from .chains import Chains, find_chains, recut, vertices_at
+from .domain import Domain
+from .errors import DomainError
+from .generate import (
+    Budget,
+    EdgePlacement,
+    FrontPlacement,
+    Optimisation,
+    Progress,
+    Samples,
+    Settling,
+    finished_mesh,
+    insert_what_was_missed,
+    measure_fresh_edges,
+    optimise,
+    place_ahead_of_front,
+    place_along_edges,
+    settle,
+)
+from .mesh import Mesh
+from .misfits import Fit, around_misfits
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Editing:
+    """What is edited.
+
+    Attributes
+    ----------
+    fit : Fit
+        What may stay.
+    turns : int
+        How often zones are made and filled; what one leaves needs another zone.
+    removal_rounds : int
+        How often a vertex that could not be removed is tried again.
+    most_removed : float
+        If it were more than this share of those that can be, a new mesh is made instead.
+    """
+
+    fit: Fit = field(default_factory=Fit)
+    turns: int = 3
+    removal_rounds: int = 5
+    most_removed: float = 0.75
+
+
+def edited(
+    mesh: Mesh,
+    domain: Domain,
+    samples: Samples,
+    options: Editing,
+    budget: Budget,
+    report: Progress,
+) -> Mesh | None:
+    """The mesh, edited to fit a metric; None if a new one had better be made."""
+    report("loading the mesh", 0.02)
+    chains = find_chains(mesh, domain)
+    if chains is None:
+        return None
+    held = holders(mesh, domain, chains)
+    mesher = load(mesh, domain, held, samples)
+    for turn in range(options.turns):
+        chains = recut(mesher, chains, domain, samples)
+        measure_fresh_edges(mesher, samples, uncut_below=np.inf)
+        removable = mesher.hold_all_but(around_misfits(mesher, samples, options.fit))
+        if not removable:
+            break
+        if turn == 0 and removable > options.most_removed * np.sum(held == _core.FREE):
+            return None
+        mesher.remove_free(options.removal_rounds)
+        mesher.swap()
+        fill(mesher, samples, budget, within(report, turn / options.turns, 1 / options.turns))
+    mesher.set_constrained(chains.edges, domain.piece_segments[chains.edge_pieces])
+    mesher.compact()
+    report("done", 1.0)
+    return finished_mesh(domain, mesher, mesher.labels())
+
+
+def fill(mesher: _core.Mesher, samples: Samples, budget: Budget, report: Progress) -> None:
+    """As `generate` does it, but all that is held stays where it is."""
+    place_ahead_of_front(mesher, samples, FrontPlacement(), budget, report)
+    place_along_edges(mesher, samples, EdgePlacement(), budget, report)
+    if insert_what_was_missed(mesher, samples):
+        place_along_edges(mesher, samples, EdgePlacement(), budget, report)
+    optimise(mesher, samples, Optimisation(), budget, report)
+    settle(mesher, samples, Settling(), budget)
+
+
+def within(report: Progress, start: float, share: float) -> Progress:
+    """Reports a part of the work as that part of the whole."""
+    return lambda stage, fraction: report(stage, start + share * fraction)
+
+
+def holders(mesh: Mesh, domain: Domain, chains: Chains) -> Ints:
+    """What holds each vertex, (n,): nothing, its segment, or that it is a point of the domain."""
+    held = np.full(len(mesh.points), _core.FREE, np.int32)
+    pieces = np.repeat(np.arange(len(chains.first) - 1), np.diff(chains.first))
+    held[chains.vertices] = domain.piece_segments[pieces]
+    held[vertices_at(mesh, domain.points)] = _core.FIXED
+    return held
+
+
+def load(mesh: Mesh, domain: Domain, held: Ints, metric: ControlSpace) -> _core.Mesher:
+    """The mesh in the hands of a mesher; labels are regions."""
+    try:
+        return _core.Mesher(
+            mesh.points,
+            metric(mesh.points),
+            mesh.triangles,
+            regions_in_domain(mesh, domain),
+            mesh.edges,
+            held,
+        )
+    except ValueError as error:
+        raise DomainError(f"the mesh cannot be adapted: {error}") from error
+
+
+def regions_in_domain(mesh: Mesh, domain: Domain) -> Ints:
+    """The regions of the triangles as the domain numbers them, by name if they have one."""
+    number = np.zeros(max(int(mesh.regions.max()), 0) + 1, np.int32)
+    unnamed = np.setdiff1d(domain.seed_regions, list(domain.region_names.values()))
+    unnamed = unnamed[(unnamed > 0) & (unnamed < len(number))]
+    number[unnamed] = unnamed
+    for name, old in mesh.region_names.items():
+        if 0 <= old < len(number):
+            number[old] = domain.region_names.get(name, 0)
+    return number[mesh.regions]
