@@ -15,7 +15,7 @@ from .chords import Surroundings, chords_along, name_of_curve
 from .curves import Curve
 from .domain_input import Floats, Inside, Ints, read_only
 from .errors import DomainError
-from .runs import Run, join
+from .runs import Run, join, points_on
 
 JOINED = 1e-12
 """Ends of curves that are nearer than this share of the extent are one, if nothing else is said."""
@@ -25,6 +25,9 @@ FIRST_CHORDS = 8
 
 TURN = 15.0
 """Curves turn by at most so many degrees along a chord of the inscribed polygon."""
+
+OUTLINE_LOOKS = 4
+"""In so many steps a curve is looked at along each chord of an outline."""
 
 GAUSS = np.polynomial.legendre.leggauss(10)
 
@@ -82,6 +85,29 @@ class Curved:
         for mine in np.split(order, first)[1:]:
             out[mine] = _areas_beside(self.runs[run[mine[0]]], u[mine])
         return out
+
+    def chords_within(self, tolerance: float) -> tuple[NDArray[np.integer], Floats]:
+        """Chords, run (k,) and parameters (k, 2), that are this near to their curves."""
+        chosen = self.segment_runs >= 0
+        run: NDArray[np.integer] = self.segment_runs[chosen]
+        u = self.segment_parameters[chosen]
+        t = np.linspace(0, 1, OUTLINE_LOOKS + 1)
+        while True:
+            at = u[:, :1] + t * (u[:, 1:] - u[:, :1])
+            p = points_on(self.runs, np.repeat(run, len(t)), at.ravel()).reshape(-1, len(t), 2)
+            d = p[:, -1] - p[:, 0]
+            off = p - p[:, :1]
+            height = np.abs(off[..., 0] * d[:, None, 1] - off[..., 1] * d[:, None, 0]).max(axis=1)
+            parts = np.ceil(np.sqrt(height / np.hypot(*d.T) / tolerance)).clip(1).astype(np.intp)
+            if (parts == 1).all():
+                return run, u
+            first = np.repeat(np.cumsum(parts) - parts, parts)
+            k = np.arange(parts.sum()) - first
+            start = np.repeat(u[:, 0], parts) + k * np.repeat((u[:, 1] - u[:, 0]) / parts, parts)
+            end = np.where(
+                k == np.repeat(parts, parts) - 1, np.repeat(u[:, 1], parts), np.roll(start, -1)
+            )
+            run, u = np.repeat(run, parts), np.stack([start, end], axis=1)
 
 
 def _areas_beside(line: Run, u: Floats) -> Floats:

@@ -26,9 +26,12 @@ from .domain_input import (
 )
 from .errors import DomainError
 from .periodic import Motion, PeriodicPair, periodic_pair
+from .runs import points_on
 
 if TYPE_CHECKING:
     from .mesh import Mesh
+
+SMALLEST_TOLERANCE = 1e-10  # of `Domain.outline`, as a share of the extent
 
 
 class Domain:
@@ -341,6 +344,39 @@ class Domain:
             self.curved.segment_runs[segments], self.curved.segment_parameters[segments]
         )
         return float(np.sum(np.where(on_left, areas, -areas)))
+
+    def outline(self, tolerance: float) -> Floats:
+        """All boundaries and internal lines as straight segments, curves to a tolerance.
+
+        For what measures distances from them, `metrics.Geometry` and all that takes one: a layer on
+        a curve wants segments that are off it by much less than the layer is thick.
+
+        Parameters
+        ----------
+        tolerance : float
+            No curve is further than about this from its segments; at least 1e-10 of the extent.
+
+        Returns
+        -------
+        (k, 2, 2) array
+            The two ends of each segment.
+
+        Examples
+        --------
+        >>> from adaptmesh.curves import Circle
+        >>> disc = Domain.from_curves([Circle((0, 0), 1)])
+        >>> bool(np.hypot(*disc.outline(1e-4).mean(axis=1).T).min() > 1 - 1e-4)
+        True
+        """
+        least = SMALLEST_TOLERANCE * float(np.ptp(self.points, axis=0).max())
+        if not tolerance >= least:
+            raise DomainError(f"tolerance={tolerance}: at least {least:g} is wanted")
+        straight = self.points[self.segments[self.curved.segment_runs < 0]]
+        if not self.curved.runs:
+            return straight
+        run, u = self.curved.chords_within(tolerance)
+        ends = points_on(self.curved.runs, np.repeat(run, 2), u.ravel()).reshape(-1, 2, 2)
+        return np.concatenate([straight, ends])
 
     def __repr__(self) -> str:
         names = ", ".join([*self.names, *self.region_names])

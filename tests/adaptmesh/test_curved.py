@@ -1,5 +1,7 @@
 """Domains of curves: corners and joints, what is enclosed, what is refused, and their meshes."""
 
+import re
+
 import numpy as np
 import pytest
 from reference.curved import CASES, DISC, box, figure_eight, kinked, parabola, sine
@@ -238,3 +240,65 @@ def test_many_holes():
     domain = Domain.from_curves([*holes, Circle((3.5, 3.5), 6)])
     assert domain.area == pytest.approx(np.pi * (36 - 64 * 0.09), rel=1e-12)
     am.generate(domain, 0.3).validate().raise_if_invalid()
+
+
+@pytest.mark.parametrize("tolerance", [0.1, 1e-3, 1e-6])
+def test_outline_is_near_its_curves(tolerance):
+    ellipse = EllipticArc((2.8, 1), (0.7, 0.05), 0.5)
+    domain = Domain.from_curves([*box(0, 0, 4, 2), ellipse], names={"hole": [4]})
+    outline = domain.outline(tolerance)
+    assert np.hypot(*(outline[:4, 1] - outline[:4, 0]).T).sum() == 12
+    ring = outline[4:]
+    assert (ring[1:, 0] == ring[:-1, 1]).all()
+    area = 0.5 * np.sum(ring[:, 0, 0] * ring[:, 1, 1] - ring[:, 0, 1] * ring[:, 1, 0])
+    assert 0 < np.pi * 0.7 * 0.05 - abs(area) < 3 * tolerance  # its length is less than 3
+    assert len(ring) < 40 + 10 / np.sqrt(tolerance)
+
+
+def test_outline_of_segments_and_wrong_tolerances():
+    square = Domain.rectangle(0, 0, 1, 1)
+    assert (square.outline(0.1) == square.points[square.segments]).all()
+    for wrong in (0, -1, np.nan, 1e-13):
+        with pytest.raises(DomainError, match="tolerance"):
+            DISC.outline(wrong)
+
+
+def random_curves(rng):
+    """A wobbly ring and a few curves in or across it, at any scale and place; and the scale."""
+    scale = 10.0 ** rng.uniform(-6, 6)
+    place = scale * rng.normal(0, 10, 2) * (rng.random() < 0.3)
+
+    def ring(centre, radius, n, noise):
+        angles = np.arange(n) * 2 * np.pi / n
+        radii = radius * (1 + noise * rng.uniform(-1, 1, n))
+        points = radii[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        return (centre + points) * scale + place
+
+    curves = [Spline(ring((0, 0), 1, rng.integers(4, 12), rng.choice([0, 0.1, 0.3])), closed=True)]
+    for kind in rng.integers(0, 4, rng.integers(0, 4)):
+        centre, radius = rng.uniform(-0.7, 0.7, 2), 10.0 ** rng.uniform(-3, -0.4)
+        at, r = centre * scale + place, radius * scale
+        if kind == 0:
+            curves.append(Circle(at, r))
+        elif kind == 1:
+            curves.append(EllipticArc(at, (r, r * 10.0 ** rng.uniform(-3, 0)), rng.uniform(0, 3)))
+        elif kind == 2:
+            curves.append(BSpline(ring(centre, radius, rng.integers(4, 9), 0.3), closed=True))
+        else:
+            curves.append(Bezier(rng.uniform(-0.5, 0.5, (rng.integers(2, 6), 2)) * scale + place))
+    return curves, scale
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_random_curves_are_meshed_or_refused_with_the_place(seed):
+    rng = np.random.default_rng(seed)
+    curves, scale = random_curves(rng)
+    try:
+        domain = Domain.from_curves(curves)
+    except DomainError as error:
+        assert re.search(
+            r"curve \d.*\(-?[\d.e+-]+, -?[\d.e+-]+\)|not closed.* point \d", str(error)
+        )
+        return
+    mesh = am.generate(domain, scale * 10.0 ** rng.uniform(-1, 0.5))
+    mesh.validate().raise_if_invalid()
