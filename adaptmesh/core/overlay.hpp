@@ -8,7 +8,9 @@
 // hole is there), they may not; then a tree of boxes names all that could be met.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "adaptmesh/core/overlap.hpp"
@@ -65,6 +67,18 @@ class Overlay {
         const double ux = t.at[1].x - t.at[0].x, uy = t.at[1].y - t.at[0].y;
         const double vx = t.at[2].x - t.at[0].x, vy = t.at[2].y - t.at[0].y;
         return 0.5 * (ux * vy - uy * vx);
+    }
+
+    // By how much the area of a triangle, and the sum of its parts, may be off by rounding: a share
+    // of its longest side squared, however thin it is.
+    static double rounding(const Triangle3& t) {
+        double longest = 0;
+        for (int i = 0; i < 3; ++i) {
+            const Point p = t.at[i], q = t.at[(i + 1) % 3];
+            const double x = q.x - p.x, y = q.y - p.y;
+            longest = std::max(longest, x * x + y * y);
+        }
+        return 64 * std::numeric_limits<double>::epsilon() * longest;
     }
 
   private:

@@ -336,7 +336,7 @@ def test_thin_triangles(angle):
     values = rng.random(len(old.points))
     for keep in (False, True):
         moved = am.transfer(values, old, new, method="conservative", keep_bounds=keep, space="P1")
-        assert integral(new, moved, "P1") == pytest.approx(integral(old, values, "P1"), rel=1e-11)
+        assert integral(new, moved, "P1") == pytest.approx(integral(old, values, "P1"), rel=1e-12)
     ones = am.transfer(np.ones(len(old.points)), old, new, method="conservative", space="P1")
     np.testing.assert_allclose(ones, 1, atol=1e-8)
 
