@@ -37,7 +37,8 @@ SMALLEST_TOLERANCE = 1e-10  # of `Domain.outline`, as a share of the extent
 class Domain:
     """A planar domain: straight segments between points, with holes, regions and names.
 
-    Everything is checked here, so that a domain that exists can be meshed. It never changes.
+    `from_curves` makes one of curves. Everything is checked here, so that a domain that exists can
+    be meshed. It never changes.
 
     Parameters
     ----------
