@@ -419,6 +419,9 @@ class Domain:
             "open_boundary": "the boundary is not closed: the outside leaks in"
             + (f" past point {i} {place}, where a boundary ends" if i >= 0 else "")
             + "; close it, or check `holes`; adaptmesh.repair closes gaps below its tolerance",
+            "open_hole": "a line is in a hole, where nothing is meshed"
+            + (f": it ends at point {i} {place}" if i >= 0 else "")
+            + "; remove it, or check `holes`",
             "hole_outside": f"hole {i} at {place} is not inside the domain: move or remove it",
             "hole_on_segment": f"hole {i} at {place} lies on a segment: move it into the hole",
             "region_seed_outside": f"the point of {self._seed(i)} at {place} is not inside the "
