@@ -36,9 +36,8 @@ def metric_from_adjoint(
     """The metric of least error in a goal J(u), for what there is to spend.
 
     For a conservation law div F(u) = f and the adjoint z of the goal, the error of J is bounded by
-    the interpolation error of the fluxes, weighted by the gradient of the adjoint:
-
-        |J(u) - J(u_h)| <= integral of  sum_i |dz/dx_i| |F_i - its interpolant|.
+    the interpolation error of the fluxes, weighted by the gradient of the adjoint: by the integral
+    of the sum over i of abs(dz/dx_i) abs(F_i - its interpolant).
 
     So the weighted sum of the absolute Hessians of all fluxes takes the place of the Hessian of the
     solution, in the L^1 norm.
