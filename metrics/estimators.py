@@ -86,9 +86,10 @@ def residual_indicators(
 ) -> Floats:
     """The error of each triangle by the residual of -div(k grad u) = f, (m,).
 
-    eta² = h² ||f||² / k over the triangle, h its longest side, and half of h_e ||[k du/dn]||² / k
-    over each of its sides inside the domain, where the flux jumps (k the larger of the two). Up to
-    a constant an upper bound of the error in the energy norm. Sides on the boundary count nothing.
+    The sum of eta² = h² times the integral of f² / k over the triangle, h its longest side, and of
+    half of the length of each side inside the domain times the integral over it of j² / k, j being
+    the jump of the flux k du/dn and k the larger of the two. Up to a constant an upper bound of the
+    error in the energy norm. Sides on the boundary count nothing.
 
     Parameters
     ----------
