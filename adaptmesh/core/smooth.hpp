@@ -44,10 +44,12 @@ class Smoother {
     bool move_to_ideal(Index v) {
         if (!gather(v)) return false;
         const Vertex old = mesh_.vertices[v];
-        const double cost = cost_at(old);
+        find_flatness(old);
         Point step = step_to_ideal(old);
         const double size = std::sqrt(old.metric.q(step.x, step.y));
         if (size < SHORTEST_STEP) return false;
+        gather_corrections(v);
+        const double cost = cost_with_flatness(old);
         if (size > LONGEST_STEP)
             step = {step.x * LONGEST_STEP / size, step.y * LONGEST_STEP / size};
         for (double share : {1.0, 0.4, 0.16}) {
@@ -61,6 +63,7 @@ class Smoother {
     // cost; then once more with half the step. For the few vertices where the ideal is of no help.
     bool search_around(Index v, double step) {
         if (!gather(v)) return false;
+        gather_corrections(v);
         bool moved = false;
         double cost = cost_at(mesh_.vertices[v]);
         for (int round = 0; round < 2; ++round, step *= 0.5) {
@@ -80,38 +83,52 @@ class Smoother {
 
   private:
     static constexpr double SIXTH_OF_TURN = 1.0471975511965977;  // pi / 3; M_PI is not standard
-    static constexpr double SHORTEST_STEP = 1e-3;                // not worth it, in metric units
+    static constexpr double SHORTEST_STEP = 0.03;                // not worth it, in metric units
     static constexpr double LONGEST_STEP = 0.5;
     static constexpr double WORTHWHILE = 0.9999;  // the cost must fall at least to this share
-    static constexpr double FLATTEST = 1e-6;      // quality below which a place is refused
+    static constexpr double FLATTEST = 1e6;       // 1 / Q from which on a place is refused
 
     // The ball of v: sides_[i], sides_[i + 1] are the ends of the edge opposite v in triangle i.
     bool gather(Index v) {
         if (mesh_.vertices[v].held_by != FREE) return false;
         if (mesh_.topology.triangle_at(v) == NONE || !mesh_.topology.ball(v, places_)) return false;
         sides_.clear();
-        corrections_.clear();
-        for (Place p : places_) {
-            sides_.push_back(mesh_.triangle(p.triangle).v[next(p.slot)]);
-            corrections_.push_back(mesh_.corrections.of(v, sides_.back()));
-        }
+        for (Place p : places_) sides_.push_back(mesh_.triangle(p.triangle).v[next(p.slot)]);
         sides_.push_back(sides_.front());
         start_ = mesh_.vertices[v].at;
         start_log_ = log_of(v);
         return true;
     }
 
-    double cost_at(const Vertex& p) const {
-        double cost = 0;
+    void gather_corrections(Index v) {
+        corrections_.clear();
+        for (std::size_t i = 0; i + 1 < sides_.size(); ++i)
+            corrections_.push_back(mesh_.corrections.of(v, sides_[i]));
+    }
+
+    // Finds 1 / Q of the triangles with the vertex at p; false if one is flat or turned over.
+    bool find_flatness(const Vertex& p) {
+        flatness_.clear();
         for (std::size_t i = 0; i + 1 < sides_.size(); ++i) {
             const Vertex &a = mesh_.vertices[sides_[i]], &b = mesh_.vertices[sides_[i + 1]];
-            const double q = MetricMesh::inverse_quality(p, a, b);
-            if (!(q > 0 && q < 1 / FLATTEST)) return INFINITY;
-            cost +=
-                BallCost::triangle(q) + BallCost::edge(corrections_[i] * MetricMesh::length(p, a));
+            const double flatness = MetricMesh::inverse_quality(p, a, b);
+            if (!(flatness > 0 && flatness < FLATTEST)) return false;
+            flatness_.push_back(flatness);
+        }
+        return true;
+    }
+
+    double cost_with_flatness(const Vertex& p) const {
+        if (flatness_.size() + 1 < sides_.size()) return INFINITY;
+        double cost = 0;
+        for (std::size_t i = 0; i + 1 < sides_.size(); ++i) {
+            const double length = MetricMesh::length(p, mesh_.vertices[sides_[i]]);
+            cost += BallCost::triangle(flatness_[i]) + BallCost::edge(corrections_[i] * length);
         }
         return cost;
     }
+
+    double cost_at(const Vertex& p) { return find_flatness(p) ? cost_with_flatness(p) : INFINITY; }
 
     // For each edge (a, b) of the ball the apex of the equilateral triangle on it, in the mean
     // metric M: the middle plus sqrt(3)/2 |ab| along the M-orthogonal w, where |w|_M = sqrt(det M)
@@ -125,7 +142,7 @@ class Smoother {
             const double wx = -(m.b * ex + m.c * ey), wy = m.a * ex + m.b * ey;
             // A side of length 1 is the aim, whatever the length of (a, b).
             const double height = 0.5 * std::sqrt(3.0) / std::sqrt(m.q(wx, wy));
-            const double weight = 1 / std::max(MetricMesh::quality(p, a, b), 1e-3);
+            const double weight = i < flatness_.size() ? std::min(flatness_[i], 1e3) : 1e3;
             x += weight * (0.5 * (a.at.x + b.at.x) + height * wx);
             y += weight * (0.5 * (a.at.y + b.at.y) + height * wy);
             weights += weight;
@@ -184,6 +201,7 @@ class Smoother {
     std::vector<Tensor> logs_;
     std::vector<Place> places_;
     std::vector<Index> sides_;
+    std::vector<double> flatness_;     // 1 / Q of the triangles, up to the first that is refused
     std::vector<double> corrections_;  // of the edges from the vertex to the first of each side
     Point start_{};
     Tensor start_log_{};
