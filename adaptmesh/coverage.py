@@ -10,7 +10,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -142,11 +142,12 @@ def _domain(
     _, first = np.unique(united, return_index=True)
     first = first[united[first] != united[0]]  # the outside needs no point
     places, owners = faces.places[first], owner[first]
-    regions: dict[str, Any] = {}
-    for name in dict.fromkeys(shape.name for shape in shapes if shape.name is not None):
-        mine = np.array([o >= 0 and shapes[o].name == name for o in owners.tolist()], bool)
-        if mine.any():
-            regions[name] = places[mine]
+    faces_of: dict[str, list[int]] = {shape.name: [] for shape in shapes if shape.name is not None}
+    for face, o in enumerate(owners.tolist()):
+        name = shapes[o].name if o >= 0 else None
+        if name is not None:
+            faces_of[name].append(face)
+    regions = {name: places[mine] for name, mine in faces_of.items() if mine}
     borders = edges[kept]
     used, segments = used_points(borders)
     return Domain(
@@ -162,6 +163,8 @@ def _names(left: Ints, right: Ints, shapes: Sequence[Shape]) -> dict[str, list[i
     """The edges of each border, by the regions beside it."""
     beside = np.sort(np.stack([left, right], axis=1), axis=1)
     borders, border = np.unique(beside, axis=0, return_inverse=True)
+    border = border.reshape(-1)
+    mine = np.split(np.argsort(border, kind="stable"), np.cumsum(np.bincount(border))[:-1])
     edges: dict[str, list[int]] = {}
     sides: dict[str, list[str]] = {}
     for k, owners in enumerate(borders.tolist()):
@@ -175,5 +178,5 @@ def _names(left: Ints, right: Ints, shapes: Sequence[Shape]) -> dict[str, list[i
                 f"two borders would both be named {name!r}, that of {' and '.join(named)} and that "
                 f"of {' and '.join(sides[name])}: choose names of regions without '|'"
             )
-        edges.setdefault(name, []).extend(np.flatnonzero(border.reshape(-1) == k).tolist())
+        edges.setdefault(name, []).extend(mine[k].tolist())
     return edges

@@ -8,7 +8,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
-from reference.dirty import made_valid
+from reference.winding import area_within
 
 import adaptmesh as am
 from adaptmesh.convert import to_shapely
@@ -423,11 +423,11 @@ def test_the_report_shows_a_few_of_each_kind():
 )
 @settings(max_examples=60, deadline=None)
 def test_a_lattice_ring_has_the_area_of_what_it_winds_around(ring):
-    expected = made_valid(ring)
+    expected = area_within(ring)
     try:
         domain, _ = am.repair(ring)
     except am.DomainError as error:
-        assert expected.area == 0, str(error)
+        assert expected == 0, str(error)
         return
-    assert domain.area == pytest.approx(expected.area, rel=1e-12)
+    assert domain.area == pytest.approx(expected, rel=1e-9)
     assert sum(region_areas(domain).values()) == pytest.approx(domain.area, rel=1e-12)

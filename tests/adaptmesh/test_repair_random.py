@@ -1,6 +1,6 @@
 """Random dirty outlines: a valid mesh of the right area, or an error that names the place.
 
-Here are a few; for many, ``python tests/reference/dirty.py 1000``.
+Here are a few; for many, ``python tests/dirty_outlines.py 1000``.
 """
 
 import numpy as np
