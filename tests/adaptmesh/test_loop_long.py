@@ -58,8 +58,12 @@ def test_two_hundred_iterations_keep_names_areas_and_memory(plate, tmp_path):
             )
             assert now == pytest.approx(was, rel=1e-13)
     # The front of half a turn later is the same line: no drift, in numbers of vertices or in error.
+    # Errors of single meshes scatter by 15 %, so that means of 80 differ by 2.5 % by chance.
     half = ITERATIONS // 2
     first, second = history[20:half], history[20 + half : ITERATIONS]
-    for number in (lambda it: it.n_points, lambda it: it.errors["solution"]):
+    for number, by_chance in (
+        (lambda it: it.n_points, 0.03),
+        (lambda it: it.errors["solution"], 0.1),
+    ):
         early, late = np.mean([number(it) for it in first]), np.mean([number(it) for it in second])
-        assert late == pytest.approx(early, rel=0.03)
+        assert late == pytest.approx(early, rel=by_chance)
