@@ -1,12 +1,16 @@
 """Where tests find the package and the oracles."""
 
+import importlib.util
 import os
+import shutil
+import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
 import adaptmesh
+import metrics
 
 # Lets tests import the oracles: ``from reference.exact import incircle``. Appended, not put first:
 # tests/metrics and tests/adaptmesh must not hide the packages.
@@ -51,3 +55,31 @@ def plate():
         regions={"left": (0.1, 0.1), "right": (3, 1)},
         names={"bottom": [0, 1], "interface": [6], "hole": [7, 8, 9, 10]},
     )
+
+
+@pytest.fixture
+def python_with_dolfinx(tmp_path):
+    """Runs a script by an interpreter that has dolfinx: this one, or that of the system.
+
+    The latter can load our core if it is of the same version; it finds a copy of the packages.
+    """
+    packages = tmp_path / "packages"
+    python = sys.executable
+    if importlib.util.find_spec("dolfinx") is None:
+        python = shutil.which("python3", path="/usr/bin") or pytest.skip("no other python3")
+    for package in (adaptmesh, metrics):
+        copy = packages / package.__name__
+        shutil.copytree(Path(package.__file__).parent, copy)
+        shutil.copy(package._core.__file__, copy)
+    environment = dict(os.environ, PYTHONPATH=str(packages), OMP_NUM_THREADS="1")
+
+    def run(*arguments):
+        command = [python, *map(str, arguments)]
+        return subprocess.run(
+            command, env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=300
+        )
+
+    probe = run("-c", "import adaptmesh, dolfinx")
+    if probe.returncode:
+        pytest.skip(f"no interpreter with dolfinx: {probe.stderr.strip().splitlines()[-1]}")
+    return run

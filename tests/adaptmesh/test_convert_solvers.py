@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import importlib.util
-import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import adaptmesh as am
-import metrics
 from adaptmesh import convert
 
 SCRIPTS = Path(__file__).parent / "solvers"
@@ -200,34 +196,6 @@ def test_other_meshes_of_netgen_are_refused(ngsolve):
 
 
 # --- FEniCSx ---------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def python_with_dolfinx(tmp_path):
-    """Runs a script by an interpreter that has dolfinx: this one, or that of the system.
-
-    The latter can load our core if it is of the same version; it finds a copy of the packages.
-    """
-    packages = tmp_path / "packages"
-    python = sys.executable
-    if importlib.util.find_spec("dolfinx") is None:
-        python = shutil.which("python3", path="/usr/bin") or pytest.skip("no other python3")
-    for package in (am, metrics):
-        copy = packages / package.__name__
-        shutil.copytree(Path(package.__file__).parent, copy)
-        shutil.copy(package._core.__file__, copy)
-    environment = dict(os.environ, PYTHONPATH=str(packages), OMP_NUM_THREADS="1")
-
-    def run(*arguments):
-        command = [python, *map(str, arguments)]
-        return subprocess.run(
-            command, env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=300
-        )
-
-    probe = run("-c", "import adaptmesh, dolfinx")
-    if probe.returncode:
-        pytest.skip(f"no interpreter with dolfinx: {probe.stderr.strip().splitlines()[-1]}")
-    return run
 
 
 def test_dolfinx_there_and_back_and_solves(python_with_dolfinx, mesh, tmp_path):
