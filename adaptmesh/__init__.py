@@ -22,6 +22,7 @@ from .errors import (
     MetricError,
     TransferError,
 )
+from .explain import Explanation, explain
 from .generate import generate, predict
 from .history import History, Iteration
 from .io import read, read_fields, read_sol, write, write_sol
@@ -30,6 +31,7 @@ from .mesh import Mesh
 from .overlay import Overlay
 from .plot import plot
 from .raw import Outline
+from .reasons import Cause, Reason
 from .repair import Repair, Repairs, repair
 from .report import Report, measure
 from .simplify import Dropped, simplify
@@ -45,9 +47,11 @@ __all__ = [
     "AdaptmeshError",
     "Budget",
     "BudgetError",
+    "Cause",
     "Domain",
     "DomainError",
     "Dropped",
+    "Explanation",
     "FormatError",
     "History",
     "Iteration",
@@ -57,6 +61,7 @@ __all__ = [
     "MetricError",
     "Outline",
     "Overlay",
+    "Reason",
     "Repair",
     "Repairs",
     "Report",
@@ -67,6 +72,7 @@ __all__ = [
     "adapt_loop",
     "curves",
     "delaunay",
+    "explain",
     "generate",
     "measure",
     "plot",

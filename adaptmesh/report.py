@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from metrics.measure import edge_lengths, mesh_edges, metric_areas
 
 from .adapt import control_space_on
+from .reasons import MET, Reason, Reasons
 from .validate import InvalidMeshError
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ SHORTEST, LONGEST = 2**-0.5 * (1 - 1e-9), 2**0.5 * (1 + 1e-9)
 LENGTH_RULE = "Gauss quadrature of the metric along the edge"
 QUANTILES = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 WORST = 5  # edges and triangles named
+BAD_QUALITY = 0.3  # triangles below want a reason
 
 # Each bin but the first and last is an eighth of an octave, so that the unit band is eight bins.
 LENGTH_BINS = np.concatenate([[0.0], 2.0 ** (np.arange(-12, 13) / 8), [np.inf]])
@@ -56,6 +58,7 @@ class WorstEdge(NamedTuple):
     vertices: tuple[int, int]
     start: Point
     end: Point
+    reason: Reason
 
 
 class WorstTriangle(NamedTuple):
@@ -64,6 +67,7 @@ class WorstTriangle(NamedTuple):
     quality: float
     triangle: int
     corners: tuple[Point, Point, Point]
+    reason: Reason
 
 
 @dataclass(frozen=True)
@@ -96,7 +100,7 @@ class Report:
         Triangles for each ideal one.
     length_histogram, quality_histogram : Histogram
     worst_edges : tuple of WorstEdge
-        Those whose l is farthest from 1, by ratio.
+        Those whose l is farthest from 1, by ratio; if not unit, with the reason, see `explain`.
     worst_triangles : tuple of WorstTriangle
         Those of least quality.
     """
@@ -190,6 +194,7 @@ def measure(mesh: Mesh, metric: Any) -> Report:
         raise InvalidMeshError("the triangles are flat or clockwise: see mesh.validate()")
     short, long = lengths < SHORTEST, lengths > LONGEST
     shortfall = 1 - ratio_to_unit(lengths)
+    reasons = Reasons(mesh, field)
     return Report(
         length_rule=LENGTH_RULE,
         n_points=len(mesh.points),
@@ -214,8 +219,8 @@ def measure(mesh: Mesh, metric: Any) -> Report:
         count_ratio=len(mesh.triangles) / (4 / 3**0.5 * complexity),
         length_histogram=Histogram.of(lengths, LENGTH_BINS),
         quality_histogram=Histogram.of(np.maximum(quality, 0), QUALITY_BINS),
-        worst_edges=_worst_edges(mesh, edges, lengths),
-        worst_triangles=_worst_triangles(mesh, quality),
+        worst_edges=edge_entries(mesh, edges, lengths, _smallest(ratio_to_unit(lengths)), reasons),
+        worst_triangles=triangle_entries(mesh, quality, _smallest(quality), reasons),
     )
 
 
@@ -263,19 +268,28 @@ def check_measurable(mesh: Mesh) -> None:
         raise InvalidMeshError(f"point {bad[0]} is ({x}, {y}): see mesh.validate()")
 
 
-def _worst_edges(mesh: Mesh, edges: Ints, lengths: Floats) -> tuple[WorstEdge, ...]:
-    worst = _smallest(ratio_to_unit(lengths))
-    return tuple(
-        WorstEdge(float(lengths[e]), (int(a), int(b)), *_places(mesh, a, b))
-        for e, (a, b) in zip(worst, edges[worst], strict=True)
-    )
+def edge_entries(
+    mesh: Mesh, edges: Ints, lengths: Floats, chosen: Ints, reasons: Reasons
+) -> tuple[WorstEdge, ...]:
+    """Some of the edges, with the reason why they are not unit."""
+    entries = []
+    for length, (a, b) in zip(lengths[chosen].tolist(), edges[chosen].tolist(), strict=True):
+        reason = MET if SHORTEST <= length <= LONGEST else reasons.of_edge(a, b)
+        start, end = _places(mesh, a, b)
+        entries.append(WorstEdge(length, (a, b), start, end, reason))
+    return tuple(entries)
 
 
-def _worst_triangles(mesh: Mesh, quality: Floats) -> tuple[WorstTriangle, ...]:
-    return tuple(
-        WorstTriangle(float(quality[t]), int(t), _places(mesh, *mesh.triangles[t]))
-        for t in _smallest(quality)
-    )
+def triangle_entries(
+    mesh: Mesh, quality: Floats, chosen: Ints, reasons: Reasons, below: float = BAD_QUALITY
+) -> tuple[WorstTriangle, ...]:
+    """Some of the triangles, with the reason why they are of lesser quality than `below`."""
+    entries = []
+    for t in chosen.tolist():
+        corners = mesh.triangles[t].tolist()
+        reason = MET if quality[t] >= below else reasons.of_triangle(corners)
+        entries.append(WorstTriangle(float(quality[t]), t, _places(mesh, *corners), reason))
+    return tuple(entries)
 
 
 def _smallest(values: Floats) -> Ints:

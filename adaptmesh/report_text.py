@@ -11,6 +11,8 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from .reasons import Cause, Reason
+
 if TYPE_CHECKING:
     from .report import Point, Report
 
@@ -138,11 +140,18 @@ def _worst(report: Report) -> Table:
     for edge in report.worst_edges[:SHOWN]:
         between = f"{edge.vertices[0]}–{edge.vertices[1]}"
         table.add_row(f"{edge.length:.4g}", between, f"{_at(edge.start)} to {_at(edge.end)}")
+        _add_reason(table, edge.reason)
     table.add_row("quality", "worst triangles", "")
     for triangle in report.worst_triangles[:SHOWN]:
         x, y = (sum(c) / 3 for c in zip(*triangle.corners, strict=True))
         table.add_row(f"{triangle.quality:.4g}", str(triangle.triangle), f"around {_at((x, y))}")
+        _add_reason(table, triangle.reason)
     return table
+
+
+def _add_reason(table: Table, reason: Reason) -> None:
+    if reason.cause is not Cause.MET:
+        table.add_row("", "", str(reason))
 
 
 def _at(point: Point) -> str:
