@@ -72,7 +72,7 @@ class FrontPlacement:
     accept: float = 1.35
     spacing: float = 0.8
     target: float = 1.0
-    settled: float = 0.02
+    settled: float = 0.01
     trials: int = 3
 
 

@@ -82,24 +82,29 @@ class EdgeSampler {
     // The metrics at the wanted points, in their order.
     template <typename TensorAt>
     void feed(TensorAt&& tensor_at) {
-        std::vector<Halved> halved(chords_.size());
+        // Most chords are trusted and most edges not to be cut: halves are not kept, but made anew
+        // for the few that are.
+        std::vector<Verdict> verdicts(chords_.size());
         std::vector<double> estimates = lengths_;
         for (std::size_t i = 0; i < chords_.size(); ++i) {
-            halved[i] = halve(chords_[i], tensor_at(i));
-            estimates[chords_[i].edge] += halved[i].length;
+            const Halved h = halve(chords_[i], tensor_at(i));
+            verdicts[i] = {h.length, h.is_trusted};
+            estimates[chords_[i].edge] += h.length;
         }
-        chords_.clear();
-        for (const Halved& h : halved) {
-            const bool measured_enough = h.is_trusted || estimates[h.left.edge] > longest_edge_;
-            if (!measured_enough) {
-                chords_.push_back(h.left);
-                chords_.push_back(h.right);
-                continue;
+        std::vector<Chord> asked;
+        asked.swap(chords_);
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            const Index edge = asked[i].edge;
+            const Verdict& verdict = verdicts[i];
+            const bool measured_enough = verdict.is_trusted || estimates[edge] > longest_edge_;
+            if (measured_enough) {
+                lengths_[edge] += verdict.length;
+                if (asked[i].depth == 0 && verdict.length < uncut_below_) continue;
             }
-            lengths_[h.left.edge] += h.length;
-            if (h.left.depth == 1 && h.length < uncut_below_) continue;
-            pieces_.push_back(h.left);
-            pieces_.push_back(h.right);
+            const Halved h = halve(asked[i], tensor_at(i));
+            auto& kept = measured_enough ? pieces_ : chords_;
+            kept.push_back(h.left);
+            kept.push_back(h.right);
         }
         if (chords_.empty()) finish();
     }
@@ -167,6 +172,10 @@ class EdgeSampler {
 
     struct Halved {
         Chord left, right;
+        double length;
+        bool is_trusted;
+    };
+    struct Verdict {  // on a chord: the length of its halves, and whether to trust that
         double length;
         bool is_trusted;
     };

@@ -30,7 +30,7 @@ struct FrontOptions {
     double target = 1.0;    // length of the sides to be made, before book-keeping
     double lowest = 0.6;    // height of the new triangle, at least and ...
     double highest = 1.26;  // ... at most
-    double settled = 0.02;  // a point that would move less than this stays where it is
+    double settled = 0.01;  // a point that would move less than this stays where it is
     int trials = 3;         // how often a point is asked about, at most
 };
 
