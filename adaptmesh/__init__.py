@@ -38,6 +38,7 @@ from .simplify import Dropped, simplify
 from .solved import Solution
 from .stopping import Budget
 from .transfer import transfer
+from .transient import Interval, TransientError, TransientHistory, transient_loop
 from .triangulate import delaunay
 from .validate import Validity, validate
 
@@ -54,6 +55,7 @@ __all__ = [
     "Explanation",
     "FormatError",
     "History",
+    "Interval",
     "Iteration",
     "LoopError",
     "LoopInterrupted",
@@ -67,6 +69,8 @@ __all__ = [
     "Report",
     "Solution",
     "TransferError",
+    "TransientError",
+    "TransientHistory",
     "Validity",
     "adapt",
     "adapt_loop",
@@ -84,6 +88,7 @@ __all__ = [
     "repair",
     "simplify",
     "transfer",
+    "transient_loop",
     "validate",
     "write",
     "write_sol",
