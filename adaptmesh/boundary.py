@@ -11,7 +11,7 @@ from metrics import ControlSpace
 
 from . import _core
 from .chords import Chords, Surroundings, chords_along
-from .curve_cuts import equal_shares, measure_runs
+from .curve_cuts import LONGEST_CHORD, equal_shares, measure_runs
 from .domain import Domain
 from .errors import BudgetError
 from .periodic import tied_chords, tied_cuts
@@ -21,10 +21,6 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Index = NDArray[np.integer]
 
-
-# The metric is looked at this closely along segments, in metric length: a layer that meets the
-# boundary between two looks would be missed there for good.
-LONGEST_CHORD = 0.125
 
 # More chords at once would be a boundary of millions of vertices (and a gigabyte of memory).
 MOST_CHORDS = 8_000_000

@@ -20,7 +20,8 @@ from scipy.sparse.csgraph import connected_components
 from metrics import ControlSpace
 
 from . import _core
-from .boundary import LONGEST_CHORD, measure_edges
+from .boundary import measure_edges
+from .curve_cuts import LONGEST_CHORD
 from .domain import Domain
 from .invariants.subject import edge_keys
 from .mesh import Mesh

@@ -24,8 +24,11 @@ from .runs import Run, points_on
 Floats = NDArray[np.float64]
 Index = NDArray[np.integer]
 
-# These are explained in core/edge_sampler.hpp, which does the same on straight lines.
+# The metric is looked at this closely along segments, in metric length: a layer that meets the
+# boundary between two looks would be missed there for good.
 LONGEST_CHORD = 0.125
+
+# These are explained in core/edge_sampler.hpp, which does the same on straight lines.
 AGREEMENT = 0.05
 SHORTEST_CHORD = 0.05
 FINE_DEPTH = 10

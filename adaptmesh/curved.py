@@ -167,7 +167,7 @@ def skeleton_of(
 ) -> Skeleton:
     """Join curves and inscribe a polygon; arguments as those of `Domain.from_curves`."""
     _check_curves(curves)
-    extent = _extent(curves)
+    extent = extent_of(curves)
     if join_tolerance is None:
         join_tolerance = JOINED * extent
     if not 0 <= join_tolerance < extent:
@@ -243,7 +243,8 @@ def _divided(points: Floats, lines: Ints, owners: Ints) -> tuple[Ints, Ints]:
     return np.array(out, np.int32).reshape(-1, 2), np.array(out_owners, np.int32)
 
 
-def _extent(curves: Sequence[Curve]) -> float:
+def extent_of(curves: Sequence[Curve]) -> float:
+    """The longer side of the box around curves, from a few places on each."""
     looks = np.linspace(0, 1, 9)
     points = np.concatenate([curve.point(np.append(looks, curve.breaks)) for curve in curves])
     return float(np.ptp(points, axis=0).max())

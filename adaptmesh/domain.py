@@ -237,6 +237,13 @@ class Domain:
 
         return domain_of_mesh(mesh, corner_angle)
 
+    def tag_named(self, name: str) -> int:
+        """The tag of a boundary or line by its name, or a `DomainError`."""
+        if name not in self.names:
+            known = ", ".join(map(repr, self.names)) or "none"
+            raise DomainError(f"no boundary is named {name!r}; the names are: {known}")
+        return self.names[name]
+
     def with_periodic(
         self,
         first: str,
@@ -301,10 +308,7 @@ class Domain:
         """
         frozen = self.segment_is_frozen.copy()
         for name in names:
-            if name not in self.names:
-                known = ", ".join(map(repr, self.names)) or "none"
-                raise DomainError(f"no boundary is named {name!r}; the names are: {known}")
-            mine = self.segment_tags == self.names[name]
+            mine = self.segment_tags == self.tag_named(name)
             if (mine & (self.curved.segment_runs >= 0)).any():
                 raise DomainError(
                     f"{name!r} is curved, so that nothing says where its vertices are: freeze it "

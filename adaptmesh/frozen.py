@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from .curves import Curve, Line
 from .domain import Domain
-from .errors import DomainError
 from .mesh import Mesh
 from .periodic import periodic_pair
 
@@ -22,12 +21,8 @@ def frozen_domain(domain: Domain, mesh: Mesh, names: Iterable[str]) -> Domain:
     Every name and region keeps its number.
     """
     names = list(dict.fromkeys(names))
-    for name in names:
-        if name not in domain.names:
-            known = ", ".join(map(repr, domain.names)) or "none"
-            raise DomainError(f"no boundary is named {name!r}; the names are: {known}")
+    numbers = [domain.tag_named(name) for name in names]
     edges = {name: mesh.points[mesh.edges_named(name)] for name in names}
-    numbers = [domain.names[name] for name in names]
     rest = ~np.isin(domain.segment_tags, numbers)
     build = _of_curves if domain.curved.curves else _of_segments
     out = build(domain, edges, rest).with_frozen(*names)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from io import StringIO
 from typing import TYPE_CHECKING
 
 import numpy as np
-from rich.console import Console, Group, RenderableType
+from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
+
+from .rich_text import html, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,18 +23,12 @@ ORDER = 1.0  # of linear interpolation in L^p, in the number of vertices
 
 def as_text(history: History) -> str:
     """The table in plain text, without colours."""
-    console = Console(file=StringIO(), width=WIDTH, color_system=None, highlight=False)
-    with console.capture() as text:
-        console.print(as_renderable(history))
-    return "\n".join(line.rstrip() for line in text.get().rstrip().splitlines())
+    return plain(as_renderable(history), WIDTH)
 
 
 def as_html(history: History) -> str:
     """The table for a notebook."""
-    console = Console(file=StringIO(), width=WIDTH, record=True, highlight=False)
-    console.print(as_renderable(history))
-    frame = '<pre style="line-height:1.2;font-family:monospace">{code}</pre>'
-    return console.export_html(inline_styles=True, code_format=frame)
+    return html(as_renderable(history), WIDTH)
 
 
 def as_renderable(history: History) -> RenderableType:

@@ -135,9 +135,9 @@ def adapt_loop(
         For options that contradict each other, before anything is done.
     """
     budget = budget or Budget()
-    mesh = _with_domain(mesh)
+    mesh = with_domain(mesh)
     if h_max is None:
-        h_max = SHARE_OF_EXTENT * float(np.ptp(mesh.points, axis=0).max())
+        h_max = largest_size(mesh)
     steering = Steering(
         target_vertices,
         error,
@@ -317,7 +317,13 @@ def _explained(history: History, number: int, clock: Clock) -> Iterator[None]:
         raise LoopError(history, number, clock.stage, error) from error
 
 
-def _with_domain(mesh: Mesh) -> Mesh:
+def largest_size(mesh: Mesh) -> float:
+    """That of a loop, where none is given."""
+    return SHARE_OF_EXTENT * float(np.ptp(mesh.points, axis=0).max())
+
+
+def with_domain(mesh: Mesh) -> Mesh:
+    """The mesh with its domain, found once."""
     if not isinstance(mesh, Mesh):
         raise TypeError(f"a Mesh is wanted to begin with, not {type(mesh).__name__}")
     return mesh if mesh.domain is not None else replace(mesh, domain=Domain.of_mesh(mesh))

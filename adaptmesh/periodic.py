@@ -148,10 +148,7 @@ class _Side(NamedTuple):
 
 
 def _side(domain: Domain, name: str) -> _Side:
-    if name not in domain.names:
-        known = ", ".join(map(repr, domain.names)) or "none"
-        raise DomainError(f"no boundary is named {name!r}; the names are: {known}")
-    mine = domain.segment_tags == domain.names[name]
+    mine = domain.segment_tags == domain.tag_named(name)
     run_of = domain.curved.segment_runs
     straight = mine & (run_of < 0)
     return _Side(

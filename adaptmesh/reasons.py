@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from enum import Enum
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -60,13 +61,20 @@ class Reasons:
 
     def __init__(self, mesh: Mesh, field: ControlSpace) -> None:
         self._mesh, self._field = mesh, field
-        self._constrained = {_key(a, b) for a, b in mesh.edges.tolist()}
-        self._held = np.zeros(len(mesh.points), dtype=bool)
-        self._held[mesh.edges.ravel()] = True
-        all_edges, sides = mesh_edges(mesh.triangles)
+
+    @cached_property
+    def _constrained(self) -> set[tuple[int, int]]:
+        """The edges on constraints and on the border; found when a first reason is asked for."""
+        all_edges, sides = mesh_edges(self._mesh.triangles)
         border = all_edges[np.bincount(sides.ravel(), minlength=len(all_edges)) == 1]
-        self._constrained.update(_key(a, b) for a, b in border.tolist())
-        self._held[border.ravel()] = True
+        return {_key(a, b) for a, b in [*self._mesh.edges.tolist(), *border.tolist()]}
+
+    @cached_property
+    def _held(self) -> NDArray[np.bool_]:
+        """Which vertices are on these."""
+        held = np.zeros(len(self._mesh.points), dtype=bool)
+        held[np.array(list(self._constrained), dtype=np.intp).ravel()] = True
+        return held
 
     def of_edge(self, a: int, b: int) -> Reason:
         """Why the edge between two vertices is not unit."""

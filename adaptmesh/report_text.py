@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from io import StringIO
 from typing import TYPE_CHECKING
 
-from rich.console import Console, Group, RenderableType
+from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
 from .reasons import Cause, Reason
+from .rich_text import html, plain
 
 if TYPE_CHECKING:
     from .report import Point, Report
@@ -24,18 +24,12 @@ EIGHTHS = " ▁▂▃▄▅▆▇█"
 
 def as_text(report: Report) -> str:
     """The report in plain text, without colours."""
-    console = Console(file=StringIO(), width=WIDTH, color_system=None, highlight=False)
-    with console.capture() as text:
-        console.print(as_renderable(report))
-    return "\n".join(line.rstrip() for line in text.get().rstrip().splitlines())
+    return plain(as_renderable(report), WIDTH)
 
 
 def as_html(report: Report) -> str:
     """The report for a notebook."""
-    console = Console(file=StringIO(), width=WIDTH, record=True, highlight=False)
-    console.print(as_renderable(report))
-    frame = '<pre style="line-height:1.2;font-family:monospace">{code}</pre>'
-    return console.export_html(inline_styles=True, code_format=frame)
+    return html(as_renderable(report), WIDTH)
 
 
 def as_renderable(report: Report) -> RenderableType:

@@ -140,7 +140,7 @@ class Steering:
                 known = ", ".join(map(repr, solved.fields)) or "none"
                 raise MetricError(f"there is no field {name!r} to steer by; solve gave {known}")
             values = solved.fields[name]
-            if values.dtype.kind == "c" or space_of(values, mesh) != "P1":
+            if not can_steer(values, mesh):
                 if self.fields is not None:
                     raise MetricError(
                         f"field {name!r} cannot steer: real values at the vertices are needed"
@@ -172,6 +172,11 @@ class Steering:
         if name not in self.error:
             raise MetricError(f"error gives nothing for {name!r}: give a value, or name `fields`")
         return float(self.error[name])
+
+
+def can_steer(values: Array, mesh: Mesh) -> bool:
+    """Whether a field is real and at the vertices."""
+    return values.dtype.kind != "c" and space_of(values, mesh) == "P1"
 
 
 def norm(errors: Floats, p: float) -> float:

@@ -29,10 +29,11 @@ from metrics import Background, Curvature, Limits, combined, metric_from_hessian
 from metrics.nodal import predicted_vertices
 
 from .adapt import adapt
-from .domain import Domain
 from .errors import AdaptmeshError
+from .loop import largest_size, with_domain
 from .mesh import Mesh
 from .solved import Solved, as_solved, space_of
+from .steering import can_steer
 from .transfer import METHODS, transfer
 
 Floats = NDArray[np.float64]
@@ -208,13 +209,11 @@ def transient_loop(
     if sweeps < 1 or sweeps != int(sweeps):
         raise ValueError(f"sweeps={sweeps!r}: a whole number from 1 on is wanted")
     if h_max is None:
-        h_max = float(np.ptp(mesh.points, axis=0).max()) / 4
+        h_max = largest_size(mesh)
     limits = Limits(h_min, h_max, max_anisotropy, gradation)
     steering = _Steering(fields, recovery, in_time, p, limits, combine, target_vertices)
-    if mesh.domain is None:
-        mesh = replace(mesh, domain=Domain.of_mesh(mesh))
     solver = _Solver(initial, advance, transfer, keep_bounds)
-    meshes = [mesh] * (len(ends) - 1)
+    meshes = [with_domain(mesh)] * (len(ends) - 1)
     history = TransientHistory()
     hessians: list[list[Floats]] = []
     for sweep in range(int(sweeps)):
@@ -318,12 +317,10 @@ class _Steering:
 
     def curvature(self, mesh: Mesh, fields: Fields) -> list[Floats]:
         """The absolute Hessian of each field that steers."""
-        n = len(mesh.points)
         chosen = [
             name
             for name, values in fields.items()
-            if (self.fields is None and len(values) == n and np.isrealobj(values))
-            or (self.fields is not None and name in self.fields)
+            if (name in self.fields if self.fields is not None else can_steer(values, mesh))
         ]
         missing = set(self.fields or ()) - set(chosen)
         if missing or not chosen:

@@ -10,8 +10,9 @@ from .arrays import Floats, as_numbers
 from .background import Background
 from .elements import checked_mesh, place_of
 from .errors import MetricError
-from .normalise import Limits, count_goal, lp_metric, scaled_to
+from .normalise import Limits
 from .recovery import absolute, gradients, hessians
+from .solution import metric_from_hessians
 
 __all__ = ["metric_from_adjoint"]
 
@@ -92,10 +93,15 @@ def metric_from_adjoint(
             "wherever it changes"
         )
     curvature = absolute(weighted, _FLATNESS * largest)
-    limits = Limits(h_min, h_max, max_anisotropy, gradation, law)
-    shape = lp_metric(tensor.limit(curvature, max_anisotropy=max_anisotropy), 1)
-    goal = count_goal(p, t, target_vertices, complexity)
-    return Background(p, t, scaled_to(goal, shape, p, t, limits))
+    return metric_from_hessians(
+        p,
+        t,
+        [curvature],
+        target_vertices=target_vertices,
+        complexity=complexity,
+        p=1,
+        limits=Limits(h_min, h_max, max_anisotropy, gradation, law),
+    )
 
 
 def _gradient_method(recovery: str) -> str:

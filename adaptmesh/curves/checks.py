@@ -5,25 +5,20 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .. import domain_input
 from ..errors import DomainError
 
 Floats = NDArray[np.float64]
 
 
 def checked_points(points: ArrayLike, what: str, least: int) -> Floats:
+    """The points of a curve, (n, 2), or a `DomainError` that names it."""
     try:
-        out = np.array(points, dtype=np.float64, order="C")
-    except (TypeError, ValueError) as error:
-        raise DomainError(f"{what}: points must be an (n, 2) array of numbers: {error}") from None
-    if out.ndim != 2 or out.shape[1] != 2:
-        raise DomainError(f"{what}: points must be an (n, 2) array, not one of shape {out.shape}")
+        out = domain_input.checked_points(points, "point", least=0)
+    except DomainError as error:
+        raise DomainError(f"{what}: {error}") from None
     if len(out) < least:
         raise DomainError(f"{what}: {len(out)} points; at least {least} are needed")
-    bad = np.flatnonzero(~np.isfinite(out).all(axis=1))
-    if len(bad):
-        x, y = out[bad[0]]
-        raise DomainError(f"{what}: point {bad[0]} is ({x}, {y}): coordinates must be finite")
-    out.flags.writeable = False
     return out
 
 

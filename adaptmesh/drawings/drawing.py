@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrangement import first_of_equal
+from ..curved import extent_of
 from ..curves import Curve, EllipticArc, Polyline
 from ..domain import Domain
 from ..errors import DomainError
@@ -39,8 +40,7 @@ class Drawing:
     @property
     def join_tolerance(self) -> float:
         """Ends that are nearer than this are one, in units of the coordinates."""
-        points = np.concatenate([c.point(np.linspace(0, 1, 9)) for c in self.curves])
-        return JOINED * float(np.ptp(points, axis=0).max())
+        return JOINED * extent_of(self.curves)
 
     def domain(self) -> Domain:
         """What the curves enclose: inside is what an odd number of boundaries encloses."""

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..curved import extent_of
 from ..curves import Arc, Bezier, BSpline, Curve, EllipticArc, Line
 from ..domain import Domain
 from ..drawings.drawing import JOINED
@@ -178,7 +179,6 @@ class _Model:
             name: [i for i, k in enumerate(owner) if k in set(numbers)]
             for name, numbers in self.curve_names.items()
         }
-        ends = np.concatenate([c.point(np.linspace(0, 1, 9)) for c in curves])
         holes, regions = self._seeds() if self.surfaces else ("nesting", {})
         isolated = [self.points[k] for k in self.inner_points if k in self.points]
         return Domain.from_curves(
@@ -189,7 +189,7 @@ class _Model:
             tags=self.curve_tags,
             region_tags=self.surface_tags,
             points=isolated,
-            join_tolerance=JOINED * float(np.ptp(ends, axis=0).max()),
+            join_tolerance=JOINED * extent_of(curves),
         )
 
     def _used(self) -> list[int]:

@@ -1,9 +1,6 @@
 """Our files in the programs that they are for, and theirs here."""
 
 import contextlib
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -66,23 +63,11 @@ with XDMFFile(MPI.COMM_SELF, sys.argv[2], "w") as file:
 """
 
 
-@pytest.fixture(scope="module")
-def dolfinx_python():
-    """An interpreter that has DOLFINx: Debian's is not the one of a virtual environment."""
-    for python in (sys.executable, "/usr/bin/python3"):
-        probe = [python, "-c", "import dolfinx.io"]
-        if Path(python).exists() and subprocess.run(probe, capture_output=True).returncode == 0:
-            return python
-    pytest.skip("no Python here has dolfinx")
-
-
-def test_dolfinx_reads_and_writes_xdmf(tmp_path, dolfinx_python):
+def test_dolfinx_reads_and_writes_xdmf(tmp_path, python_with_dolfinx):
     mesh = a_mesh()
     ours, theirs = tmp_path / "ours.xdmf", tmp_path / "theirs.xdmf"
     io.write(ours, mesh)
-    done = subprocess.run(
-        [dolfinx_python, "-c", BY_DOLFINX, ours, theirs], capture_output=True, text=True
-    )
+    done = python_with_dolfinx("-c", BY_DOLFINX, ours, theirs)
     assert done.returncode == 0, done.stderr
     assert_same_up_to_order(io.read(theirs), mesh)
 
