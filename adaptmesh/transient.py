@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from metrics import Background, Curvature, Limits, combined, metric_from_hessians
+from metrics import Background, Curvature, Limits, absolute, combined, metric_from_hessians
 from metrics.nodal import predicted_vertices
 
 from .adapt import adapt
@@ -42,6 +42,7 @@ Fields = Mapping[str, NDArray[Any]]
 IN_TIME = ("average", "intersection")
 PRECISION = 1e-3  # of the mean number of vertices predicted
 TRIALS = 8
+FLATNESS = 1e-8  # curvature below this share of the largest is not told from none
 
 
 @dataclass(frozen=True, eq=False)
@@ -328,10 +329,13 @@ class _Steering:
             raise ValueError(
                 f"no field {min(missing, default='')!r} to steer by; there are {names}"
             )
-        return [
-            Curvature.of(mesh.points, mesh.triangles, fields[name], self.recovery).absolute
-            for name in chosen
-        ]
+        return [self._absolute(mesh, fields[name]) for name in chosen]
+
+    def _absolute(self, mesh: Mesh, values: NDArray[Any]) -> Floats:
+        """Zero where a field is still the same everywhere, as before anything has happened."""
+        if not np.ptp(values.reshape(len(values), -1), axis=0).any():
+            return np.zeros((len(values), 3))
+        return Curvature.of(mesh.points, mesh.triangles, values, self.recovery).absolute
 
     def over_time(self, times: Floats, samples: list[list[Floats]]) -> list[Floats]:
         """One Hessian of each field for an interval: the mean by trapezoids, or the finest."""
@@ -342,7 +346,8 @@ class _Steering:
             if self.in_time == "average":
                 out.append(np.average(of_field, axis=0, weights=weights))
             else:
-                out.append(combined(of_field))
+                bent = [h for h in of_field if h.any()]
+                out.append(combined(bent) if bent else of_field[0])
         return out
 
     def metrics(
@@ -356,7 +361,11 @@ class _Steering:
         n_of = np.cumsum([0, *(len(m.points) for m in meshes)])
         points = np.concatenate([m.points for m in meshes])
         triangles = np.concatenate([m.triangles + k for m, k in zip(meshes, n_of, strict=False)])
-        stacked = [np.concatenate(of_field) for of_field in zip(*hessians, strict=True)]
+        stacked = [
+            absolute(h, FLATNESS * np.abs(h).max())
+            for h in map(np.concatenate, zip(*hessians, strict=True))
+            if h.any()
+        ]
         total = self.target * len(meshes)
         for _ in range(TRIALS):
             whole = metric_from_hessians(

@@ -118,6 +118,34 @@ def test_the_average_in_time_is_that_of_trapezoids():
     np.testing.assert_allclose(mean, [[1.5, 0, 2]], atol=1e-12)
 
 
+@pytest.mark.parametrize("in_time", ["average", "intersection"])
+def test_it_may_begin_at_rest(in_time):
+    """Nothing there at first, and in the whole first interval."""
+
+    def advance(mesh, fields, t0, t1):
+        return front(mesh, t1) if t0 > 0 else fields
+
+    got = transient_loop(
+        advance,
+        lambda mesh: np.zeros(len(mesh.points)),
+        am.generate(DOMAIN, 0.1),
+        TIMES,
+        target_vertices=400,
+        in_time=in_time,
+    )
+    assert got.mean_vertices() == pytest.approx(400, rel=0.06)
+    first, second = got.intervals
+    assert len(first.mesh.points) < 0.2 * len(second.mesh.points)
+    with pytest.raises(TransientError, match="at least one field"):
+        transient_loop(
+            lambda mesh, fields, t0, t1: fields,
+            lambda mesh: np.zeros(len(mesh.points)),
+            am.generate(DOMAIN, 0.2),
+            TIMES,
+            target_vertices=100,
+        )
+
+
 def failing(at):
     def advance(mesh, fields, t0, t1):
         if t0 == at:
