@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .curved import Curved, skeleton_of
 from .curves import Curve
+from .domain_faults import fault_text, segment_text
 from .domain_input import (
-    OR_REPAIR,
     ByLabel,
     Floats,
     Inside,
@@ -22,7 +22,9 @@ from .domain_input import (
     checked_names,
     checked_points,
     checked_segments,
+    joined_rings,
     read_only,
+    rings_of,
 )
 from .errors import DomainError
 from .periodic import Motion, PeriodicPair, periodic_pair
@@ -134,10 +136,10 @@ class Domain:
         if hasattr(outer, "__geo_interface__"):
             if len(holes):
                 raise DomainError("give a shapely polygon with its own holes, or rings, not both")
-            rings = _rings_of(outer.__geo_interface__)
+            rings = rings_of(outer.__geo_interface__)
         else:
             rings = [outer, *holes]
-        points, segments = _join_rings(rings)
+        points, segments = joined_rings(rings)
         return cls(points, segments, "nesting", names=names)
 
     @classmethod
@@ -319,8 +321,8 @@ class Domain:
         divided = np.flatnonzero(frozen & (times > 1))
         if len(divided):
             raise DomainError(
-                f"{self._segment(divided[0])} is to be one edge, but a point lies on it: divide it "
-                "there"
+                f"{segment_text(self, int(divided[0]))} is to be one edge, but a point lies on it: "
+                "divide it there"
             )
         out = copy.copy(self)
         out.segment_is_frozen = read_only(frozen)
@@ -401,86 +403,4 @@ class Domain:
                 self.points, self.segments, self.holes, self.seeds, self.nesting
             )
         except _core.Fault as fault:
-            raise DomainError(self._explain(*fault.args)) from None
-
-    def _explain(self, kind: str, i: int, j: int, x: float, y: float) -> str:
-        """What is wrong, where, and what to do, from a fault that the core found."""
-        place = f"({x:.17g}, {y:.17g})"
-        if kind in ("crossing_segments", "overlapping_segments"):
-            a, b = self._segment(i), self._segment(j)
-            if kind == "crossing_segments":
-                return (
-                    f"{a} and {b} cross at {place}: put a point there and divide both, {OR_REPAIR}"
-                )
-            return (
-                f"{a} and {b} overlap near {place}: keep one, divided at the points on it, "
-                f"{OR_REPAIR}"
-            )
-        messages = {
-            "all_collinear": "all points lie on one line: there is nothing to mesh",
-            "duplicate_points": f"points {i} and {j} are the same, {place}: keep one of them, "
-            f"{OR_REPAIR}",
-            "open_boundary": "the boundary is not closed: the outside leaks in"
-            + (f" past point {i} {place}, where a boundary ends" if i >= 0 else "")
-            + "; close it, or check `holes`; adaptmesh.repair closes gaps below its tolerance",
-            "open_hole": "a line is in a hole, where nothing is meshed"
-            + (f": it ends at point {i} {place}" if i >= 0 else "")
-            + "; remove it, or check `holes`",
-            "hole_outside": f"hole {i} at {place} is not inside the domain: move or remove it",
-            "hole_on_segment": f"hole {i} at {place} lies on a segment: move it into the hole",
-            "region_seed_outside": f"the point of {self._seed(i)} at {place} is not inside the "
-            "domain: move or remove it",
-            "region_seed_on_segment": f"the point of {self._seed(i)} at {place} lies on a "
-            "segment: move it into the region",
-            "two_seeds_one_region": f"{self._seed(i)} and {self._seed(j)} are the same part of the "
-            "domain: remove one, or separate them by segments",
-            "point_outside": f"point {i} at {place} is on no segment and outside the domain: "
-            "remove it",
-            "empty_domain": "nothing is left inside: every part of the domain is a hole",
-        }
-        return messages.get(kind, f"{kind} at {place}")
-
-    def _segment(self, i: int) -> str:
-        (x0, y0), (x1, y1) = self.points[self.segments[i]].tolist()
-        what = self.curved.describe(i) if self.curved.curves else f"segment {i}"
-        return f"{what} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
-
-    def _seed(self, i: int) -> str:
-        number = int(self.seed_regions[i]) if 0 <= i < len(self.seed_regions) else 0
-        names = [name for name, region in self.region_names.items() if region == number]
-        return f"region {names[0]!r}" if names else f"region seed {i}"
-
-
-def _rings_of(geometry: Mapping[str, Any]) -> list[ArrayLike]:
-    """All rings of a GeoJSON-like Polygon or MultiPolygon."""
-    kind = geometry.get("type")
-    if kind == "Polygon":
-        polygons = [geometry["coordinates"]]
-    elif kind == "MultiPolygon":
-        polygons = geometry["coordinates"]
-    else:
-        raise DomainError(f"a domain is made of a Polygon or MultiPolygon, not of a {kind}")
-    return [np.asarray(ring, float)[:, :2] for polygon in polygons for ring in polygon]
-
-
-def _join_rings(rings: Sequence[ArrayLike]) -> tuple[Floats, Ints]:
-    """Points and segments of closed rings; rings that share a point share its number."""
-    points, segments, n = [], [], 0
-    for k, ring in enumerate(rings):
-        p = checked_points(ring, f"ring {k}: point")
-        if (p[0] == p[-1]).all():
-            p = p[:-1]
-        if len(p) < 3:
-            raise DomainError(f"ring {k} has {len(p)} different points: at least 3 are needed")
-        number = n + np.arange(len(p))
-        points.append(p)
-        segments.append(np.stack([number, np.roll(number, -1)], axis=1))
-        n += len(p)
-    joined = np.concatenate(points) if points else np.empty((0, 2))
-    unique, first, inverse = np.unique(joined, axis=0, return_index=True, return_inverse=True)
-    if len(unique) == len(joined):
-        return joined, np.concatenate(segments) if segments else np.empty((0, 2), int)
-    order = np.argsort(first)  # np.unique sorts; keep the order in which the points were given
-    number_of = np.empty(len(unique), int)
-    number_of[order] = np.arange(len(unique))
-    return unique[order], number_of[inverse.ravel()][np.concatenate(segments)]
+            raise DomainError(fault_text(self, *fault.args)) from None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, TypeVar
@@ -186,3 +186,38 @@ def labelled(tags: NDArray[np.signedinteger]) -> dict[Label, list[int]]:
     """The items with each number but 0, as `Domain` takes them, to go with names and numbers."""
     found = np.unique(tags[tags != 0]).tolist()
     return {tag: np.flatnonzero(tags == tag).tolist() for tag in found}
+
+
+def rings_of(geometry: Mapping[str, Any]) -> list[ArrayLike]:
+    """All rings of a GeoJSON-like Polygon or MultiPolygon."""
+    kind = geometry.get("type")
+    if kind == "Polygon":
+        polygons = [geometry["coordinates"]]
+    elif kind == "MultiPolygon":
+        polygons = geometry["coordinates"]
+    else:
+        raise DomainError(f"a domain is made of a Polygon or MultiPolygon, not of a {kind}")
+    return [np.asarray(ring, float)[:, :2] for polygon in polygons for ring in polygon]
+
+
+def joined_rings(rings: Sequence[ArrayLike]) -> tuple[Floats, Ints]:
+    """Points and segments of closed rings; rings that share a point share its number."""
+    points, segments, n = [], [], 0
+    for k, ring in enumerate(rings):
+        p = checked_points(ring, f"ring {k}: point")
+        if (p[0] == p[-1]).all():
+            p = p[:-1]
+        if len(p) < 3:
+            raise DomainError(f"ring {k} has {len(p)} different points: at least 3 are needed")
+        number = n + np.arange(len(p))
+        points.append(p)
+        segments.append(np.stack([number, np.roll(number, -1)], axis=1))
+        n += len(p)
+    joined = np.concatenate(points) if points else np.empty((0, 2))
+    unique, first, inverse = np.unique(joined, axis=0, return_index=True, return_inverse=True)
+    if len(unique) == len(joined):
+        return joined, np.concatenate(segments) if segments else np.empty((0, 2), int)
+    order = np.argsort(first)  # np.unique sorts; keep the order in which the points were given
+    number_of = np.empty(len(unique), int)
+    number_of[order] = np.arange(len(unique))
+    return unique[order], number_of[inverse.ravel()][np.concatenate(segments)]

@@ -1,0 +1,73 @@
+"""Arguments and options that several commands of the command line share."""
+
+from __future__ import annotations
+
+from enum import Enum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+class Show(str, Enum):
+    """What the colours of a picture mean."""
+
+    mesh = "mesh"
+    quality = "quality"
+    length = "length"
+    size = "size"
+    region = "region"
+
+
+SIZE_HELP = (
+    "Edge length asked for: a number, or an expression of x and y such as "
+    "'0.01 + 0.1*hypot(x, y)'. It is parsed, never executed."
+)
+
+MeshFile = Annotated[
+    Path,
+    typer.Argument(metavar="MESH", exists=True, dir_okay=False, help="Mesh: .vtu .msh .mesh ..."),
+]
+OutlineFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="DOMAIN",
+        exists=True,
+        dir_okay=False,
+        help="What to mesh: polygons (.geojson .wkt .shp), drawings (.svg .dxf), Triangle's .poly, "
+        "Gmsh's .geo, BAMG's .g, or a mesh (.msh .mesh .vtu ...) whose domain is meshed anew.",
+    ),
+]
+Size = Annotated[str | None, typer.Option("--size", "-s", metavar="EXPR", help=SIZE_HELP)]
+Metric = Annotated[
+    Path | None,
+    typer.Option(
+        "--metric",
+        "-m",
+        metavar="FILE.sol",
+        exists=True,
+        dir_okay=False,
+        help="Sizes or metric tensors at the vertices of the input mesh.",
+    ),
+]
+Output = Annotated[
+    Path, typer.Option("--output", "-o", metavar="FILE", dir_okay=False, help="Mesh to write.")
+]
+Picture = Annotated[
+    Path | None, typer.Option("--plot", metavar="PNG", dir_okay=False, help="Picture to write.")
+]
+MaxVertices = Annotated[
+    int | None,
+    typer.Option(min=3, metavar="N", help="Refuse, before meshing, to make more than N vertices."),
+]
+Placement = Annotated[
+    str | None,
+    typer.Option(metavar="NAME", help="How new points are placed, e.g. 'edges': along long edges."),
+]
+Tolerance = Annotated[
+    float | None,
+    typer.Option(
+        min=0.0, metavar="LENGTH", help="What is nearer is made one; 1e-9 of the extent if absent."
+    ),
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]

@@ -1,0 +1,56 @@
+"""What is wrong with a domain that the core refuses: where, and what to do."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .domain_input import OR_REPAIR
+
+if TYPE_CHECKING:
+    from .domain import Domain
+
+
+def fault_text(domain: Domain, kind: str, i: int, j: int, x: float, y: float) -> str:
+    """What is wrong, where, and what to do, from a fault that the core found."""
+    place = f"({x:.17g}, {y:.17g})"
+    if kind in ("crossing_segments", "overlapping_segments"):
+        a, b = segment_text(domain, i), segment_text(domain, j)
+        if kind == "crossing_segments":
+            return f"{a} and {b} cross at {place}: put a point there and divide both, {OR_REPAIR}"
+        return (
+            f"{a} and {b} overlap near {place}: keep one, divided at the points on it, {OR_REPAIR}"
+        )
+    messages = {
+        "all_collinear": "all points lie on one line: there is nothing to mesh",
+        "duplicate_points": f"points {i} and {j} are the same, {place}: keep one of them, "
+        f"{OR_REPAIR}",
+        "open_boundary": "the boundary is not closed: the outside leaks in"
+        + (f" past point {i} {place}, where a boundary ends" if i >= 0 else "")
+        + "; close it, or check `holes`; adaptmesh.repair closes gaps below its tolerance",
+        "open_hole": "a line is in a hole, where nothing is meshed"
+        + (f": it ends at point {i} {place}" if i >= 0 else "")
+        + "; remove it, or check `holes`",
+        "hole_outside": f"hole {i} at {place} is not inside the domain: move or remove it",
+        "hole_on_segment": f"hole {i} at {place} lies on a segment: move it into the hole",
+        "region_seed_outside": f"the point of {seed_text(domain, i)} at {place} is not inside the "
+        "domain: move or remove it",
+        "region_seed_on_segment": f"the point of {seed_text(domain, i)} at {place} lies on a "
+        "segment: move it into the region",
+        "two_seeds_one_region": f"{seed_text(domain, i)} and {seed_text(domain, j)} are the same "
+        "part of the domain: remove one, or separate them by segments",
+        "point_outside": f"point {i} at {place} is on no segment and outside the domain: remove it",
+        "empty_domain": "nothing is left inside: every part of the domain is a hole",
+    }
+    return messages.get(kind, f"{kind} at {place}")
+
+
+def segment_text(domain: Domain, i: int) -> str:
+    (x0, y0), (x1, y1) = domain.points[domain.segments[i]].tolist()
+    what = domain.curved.describe(i) if domain.curved.curves else f"segment {i}"
+    return f"{what} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
+
+
+def seed_text(domain: Domain, i: int) -> str:
+    number = int(domain.seed_regions[i]) if 0 <= i < len(domain.seed_regions) else 0
+    names = [name for name, region in domain.region_names.items() if region == number]
+    return f"region {names[0]!r}" if names else f"region seed {i}"
