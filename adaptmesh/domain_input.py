@@ -197,7 +197,15 @@ def rings_of(geometry: Mapping[str, Any]) -> list[ArrayLike]:
         polygons = geometry["coordinates"]
     else:
         raise DomainError(f"a domain is made of a Polygon or MultiPolygon, not of a {kind}")
-    return [np.asarray(ring, float)[:, :2] for polygon in polygons for ring in polygon]
+    rings = [np.asarray(ring, float) for polygon in polygons for ring in polygon]
+    heights = np.concatenate([ring[:, 2:].ravel() for ring in rings] or [np.empty(0)])
+    if len(heights) and heights.min() < heights.max():
+        low, high = heights.min(), heights.max()
+        raise DomainError(
+            f"points of this {kind} lie at heights from {low:g} to {high:g}, and a domain is "
+            f"plane: leave the heights out (shapely.force_2d), {OR_REPAIR}"
+        )
+    return [ring[:, :2] for ring in rings]
 
 
 def joined_rings(rings: Sequence[ArrayLike]) -> tuple[Floats, Ints]:

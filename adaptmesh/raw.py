@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -85,6 +85,8 @@ class Shape:
         Whether rings have to end where they start, as in GeoJSON.
     nested : bool
         Whether a ring inside a hole is meant as an island; else it is a mistake that is read so.
+    heights : (float, float) or None
+        The least and the greatest third coordinate, if points lie at different heights.
     """
 
     label: str
@@ -92,12 +94,13 @@ class Shape:
     parts: Sequence[Sequence[Floats]]
     closed: bool = False
     nested: bool = False
+    heights: tuple[float, float] | None = None
 
     @classmethod
     def of_shapely(
         cls, polygon: Polygon | MultiPolygon, number: int = 0, name: str | None = None
     ) -> Shape:
-        """The rings of a polygon or multipolygon of shapely; a third coordinate is dropped."""
+        """The rings of a polygon or multipolygon of shapely."""
         import shapely
 
         label = label_of(number, name)
@@ -108,7 +111,8 @@ class Shape:
             [shapely.get_coordinates(ring) for ring in shapely.get_rings(part)]
             for part in shapely.get_parts(polygon)
         ]
-        return cls(label, name, [part for part in parts if part])
+        shape = cls(label, name, [part for part in parts if part])
+        return shape.with_heights(shapely.get_coordinates(polygon, include_z=True)[:, 2])
 
     @classmethod
     def of_rings(
@@ -135,7 +139,20 @@ class Shape:
             raise FormatError(f"{label} cannot be read: its coordinates are {coordinates!r}")
         parts = [coordinates] if kind == "Polygon" else coordinates
         read = [[_ring(ring, label) for ring in part] for part in parts]
-        return cls(label, name, [part for part in read if part], closed=True)
+        shape = cls(label, name, [part for part in read if part], closed=True)
+        points = (point for part in parts for ring in part for point in ring)
+        try:
+            return shape.with_heights([point[2] for point in points if len(point) > 2])
+        except (TypeError, ValueError) as error:
+            raise FormatError(f"{label} cannot be read: a height in it is {error}") from None
+
+    def with_heights(self, z: ArrayLike) -> Shape:
+        """The same shape, whose points lie at these heights; not finite: at none."""
+        heights = np.asarray(z, dtype=np.float64)
+        heights = heights[np.isfinite(heights)]
+        if not len(heights) or heights.min() == heights.max():
+            return self
+        return replace(self, heights=(float(heights.min()), float(heights.max())))
 
 
 def label_of(number: int, name: str | None) -> str:

@@ -87,8 +87,8 @@ def rings_of(shapes: Sequence[Shape], log: list[Repair]) -> Rings:
     ----------
     shapes : sequence of Shape
     log : list of Repair
-        Gets a record of each ring that was not closed, of each point given twice in a row, and of
-        each ring with less than three points.
+        Gets a record of each ring that was not closed, of each point given twice in a row, of each
+        ring with less than three points, and of each polygon that does not lie in a plane.
 
     Raises
     ------
@@ -101,6 +101,8 @@ def rings_of(shapes: Sequence[Shape], log: list[Repair]) -> Rings:
     for s, shape in enumerate(shapes):
         if not any(len(ring) for part in shape.parts for ring in part):
             raise DomainError(f"{shape.label} is empty: remove it")
+        if shape.heights is not None:
+            log.append(_flattened(shape))
         for k, part in enumerate(shape.parts):
             for r, given in enumerate(part):
                 label = _label(shape, k, r)
@@ -125,6 +127,13 @@ def rings_of(shapes: Sequence[Shape], log: list[Repair]) -> Rings:
     kept = np.flatnonzero(first == np.arange(n))
     joined = np.searchsorted(kept, first[np.concatenate(segments)])
     return Rings(rings, all_points[kept], joined, np.concatenate(ring_of), np.concatenate(numbers))
+
+
+def _flattened(shape: Shape) -> Repair:
+    x, y = next(ring[0].tolist() for part in shape.parts for ring in part if len(ring))
+    low, high = shape.heights or (0.0, 0.0)
+    what = f"points of {shape.label} lie at heights from {low:g} to {high:g}; x and y kept"
+    return Repair("heights", (x, y), what)
 
 
 def _label(shape: Shape, part: int, ring: int) -> str:

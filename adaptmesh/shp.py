@@ -1,7 +1,7 @@
 """Shapefiles of geographic information systems, read by pyshp: ``.shp``, with names in ``.dbf``.
 
 The attribute ``name``, in any case, names the region of each polygon; without a ``.dbf`` beside the
-``.shp`` none has a name. Heights and measures at the points are passed over.
+``.shp`` none has a name. Measures at the points are passed over.
 """
 
 from __future__ import annotations
@@ -27,25 +27,27 @@ def read_shapefile(path: Path) -> list[Shape]:
     _refuse_cut_short(path)
     try:
         with pyshp.Reader(str(path)) as reader:
-            geometries = [
-                None if shape.shapeType == pyshp.NULL else shape.__geo_interface__
+            read = [
+                (None, ())
+                if shape.shapeType == pyshp.NULL
+                else (shape.__geo_interface__, getattr(shape, "z", ()))
                 for shape in reader.iterShapes()
             ]
             has_records = any(path.with_suffix(s).exists() for s in (".dbf", ".DBF"))
             names = _names(reader) if has_records else []
     except (pyshp.ShapefileException, pyshp.GeoJSON_Error, *_OF_DAMAGE) as error:
         raise FormatError(f"{path} is damaged, or no shapefile: {error}") from None
-    if not geometries:
+    if not read:
         raise DomainError("it has no shapes: there is nothing to mesh")
-    if names and len(names) != len(geometries):
+    if names and len(names) != len(read):
         raise FormatError(
-            f"{path} has {len(geometries)} shapes, and the .dbf beside it {len(names)} records: "
+            f"{path} has {len(read)} shapes, and the .dbf beside it {len(names)} records: "
             "they do not belong together"
         )
-    names = names or [None] * len(geometries)
+    names = names or [None] * len(read)
     return [
-        Shape.of_geojson(geometry, i, name)
-        for i, (geometry, name) in enumerate(zip(geometries, names, strict=True))
+        Shape.of_geojson(geometry, i, name).with_heights(z)
+        for i, ((geometry, z), name) in enumerate(zip(read, names, strict=True))
     ]
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
+from adaptmesh import Domain, repair
 from adaptmesh.coverage import domain_of_polygons
 from adaptmesh.errors import DomainError
 
@@ -45,9 +46,21 @@ def test_parts_of_one_name_are_one_region():
     assert region_area(domain, "land") == 3.0
 
 
-def test_a_third_coordinate_is_ignored():
+def test_a_polygon_may_lie_in_a_plane_at_any_height():
     square = shapely.from_wkt("POLYGON Z ((0 0 5, 1 0 5, 1 1 5, 0 1 5, 0 0 5))")
     assert domain_of_polygons([square], [None]).points.shape == (4, 2)
+    assert Domain.polygon(square).points.shape == (4, 2)
+
+
+def test_points_at_different_heights_are_refused_or_repaired():
+    roof = shapely.from_wkt("POLYGON Z ((0 0 5, 1 0 5, 1 1 7, 0 1 7, 0 0 5))")
+    with pytest.raises(DomainError, match=r"heights at \(0, 0\): .*'roof'.* from 5 to 7"):
+        domain_of_polygons([roof], ["roof"])
+    with pytest.raises(DomainError, match=r"heights from 5 to 7.*force_2d.*adaptmesh.repair"):
+        Domain.polygon(roof)
+    domain, repairs = repair({"roof": roof})
+    assert repairs.counts == {"heights": 1}
+    assert domain.area == 1.0
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])

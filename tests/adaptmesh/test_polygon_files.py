@@ -1,5 +1,6 @@
 """Polygons in WKT and in shapefiles: what is read, and what is refused with its place."""
 
+import json
 import random
 import struct
 import warnings
@@ -31,7 +32,7 @@ WITH_HOLE = "POLYGON ((0 0, 0 3, 3 3, 3 0, 0 0), (1 1, 2 1, 2 2, 1 2, 1 1))"
         (WITH_HOLE, 8.0),
         (f"\ufeff\n SRID=4326; {WITH_HOLE.lower()}\n", 8.0),
         (WITH_HOLE.replace(" ", "\n"), 8.0),
-        ("Polygon Z((0 0 1,3 0 1,3 3 7,0 0 1))", 4.5),
+        ("Polygon Z((0 0 7,3 0 7,3 3 7,0 0 7))", 4.5),
         (f"{WITH_HOLE}\nPOLYGON ((3 0, 3 3, 5 3, 5 0, 3 0))", 14.0),
         ("MULTIPOLYGON (((0 0, 1 0, 0 1, 0 0)), ((5 5, 6 5, 5 6, 5 5)))", 1.0),
         (f"GEOMETRYCOLLECTION ({WITH_HOLE}, POLYGON ((3 0, 3 3, 5 3, 5 0, 3 0)))", 14.0),
@@ -159,3 +160,25 @@ def damaged(path, content):
             am.read_domain(write(path, content))
         except AdaptmeshError as error:
             assert "a.shp" in str(error)
+
+
+def test_heights_are_refused_with_the_polygon(tmp_path):
+    pyshp = pytest.importorskip("shapefile")
+    with pyshp.Writer(str(tmp_path / "a.shp"), shapeType=pyshp.POLYGONZ) as writer:
+        writer.field("id", "N")
+        writer.polyz([[(x, y, x) for x, y in SQUARE]])
+        writer.record(0)
+    corners = [[0, 0, 0], [3, 0, 3], [3, 3, 3], [0, 0, 0]]
+    (tmp_path / "a.geojson").write_text(json.dumps({"type": "Polygon", "coordinates": [corners]}))
+    (tmp_path / "a.wkt").write_text("POLYGON Z ((0 0 0, 3 0 3, 3 3 3, 0 0 0))")
+    for name in ("a.shp", "a.geojson", "a.wkt"):
+        with pytest.raises(DomainError, match=rf"{name}: heights at .*polygon 0 .* from 0 to 3"):
+            am.read_domain(tmp_path / name)
+        assert am.repair(tmp_path / name)[1].counts == {"heights": 1}
+
+
+def test_a_height_that_is_no_number(tmp_path):
+    corners = [[0, 0, 0], [3, 0, "high"], [3, 3, 3], [0, 0, 0]]
+    (tmp_path / "a.geojson").write_text(json.dumps({"type": "Polygon", "coordinates": [corners]}))
+    with pytest.raises(FormatError, match=r"a\.geojson: polygon 0 .*'high'"):
+        am.read_domain(tmp_path / "a.geojson")
