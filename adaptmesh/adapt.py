@@ -49,7 +49,8 @@ def adapt(
         of the vertices would have to go, if it has curves or periodic boundaries, or if the
         constrained edges of the mesh are not those of the domain.
     frozen : sequence of str, optional
-        Names of boundaries and lines whose edges stay as the mesh has them, to fit a neighbour.
+        Names of boundaries and lines whose edges stay as the mesh has them, to fit a neighbour;
+        those that are periodic with them stay, too.
     placement, max_vertices, progress
         As in `generate`; `placement` is of no account where the mesh is edited.
 

@@ -14,7 +14,7 @@ from .chords import Chords, Surroundings, chords_along
 from .curve_cuts import LONGEST_CHORD, equal_shares, measure_runs
 from .domain import Domain
 from .errors import BudgetError
-from .periodic import tied_chords, tied_cuts
+from .periodic import frozen_pieces, tied_chords, tied_cuts
 from .spans import spans_of
 
 Floats = NDArray[np.float64]
@@ -124,7 +124,7 @@ def cut_outline(domain: Domain, field: ControlSpace, most_points: int) -> Outlin
 
     kept = is_straight[domain.piece_segments]
     pieces = _canonical(vertices, number[domain.pieces[kept]])
-    free = np.flatnonzero(~domain.segment_is_frozen[domain.piece_segments[kept]])
+    free = np.flatnonzero(~frozen_pieces(domain)[kept])
     starts, stops = pieces[free].T
     sampler = _core.edge_sampler(
         vertices[starts], tensors[starts], vertices[stops], tensors[stops], LONGEST_CHORD

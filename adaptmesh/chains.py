@@ -25,6 +25,7 @@ from .curve_cuts import LONGEST_CHORD
 from .domain import Domain
 from .invariants.subject import edge_keys
 from .mesh import Mesh
+from .periodic import frozen_pieces
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -156,8 +157,7 @@ def recut(mesher: _core.Mesher, chains: Chains, domain: Domain, field: ControlSp
     tensors = field(points)
     at = chains.edge_starts
     lengths = measure_edges(_sampler(points, tensors, at, at + 1), field)
-    is_frozen = domain.segment_is_frozen[domain.piece_segments]
-    stretches = _stretches(chains, lengths, is_frozen)
+    stretches = _stretches(chains, lengths, frozen_pieces(domain))
     if not len(stretches):
         return chains
     begin, end = stretches.T

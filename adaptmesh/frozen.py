@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from .curves import Curve, Line
 from .domain import Domain
 from .mesh import Mesh
-from .periodic import periodic_pair
+from .periodic import periodic_pair, with_partners
 
 Floats = NDArray[np.float64]
 
@@ -18,9 +18,9 @@ Floats = NDArray[np.float64]
 def frozen_domain(domain: Domain, mesh: Mesh, names: Iterable[str]) -> Domain:
     """The domain with the edges that a mesh of it has on these boundaries for segments, frozen.
 
-    Every name and region keeps its number.
+    Every name and region keeps its number. What is periodic with a frozen boundary is frozen too.
     """
-    names = list(dict.fromkeys(names))
+    names = with_partners(domain, names)
     numbers = [domain.tag_named(name) for name in names]
     edges = {name: mesh.points[mesh.edges_named(name)] for name in names}
     rest = ~np.isin(domain.segment_tags, numbers)

@@ -10,7 +10,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -189,6 +189,23 @@ def _partners(
         raise DomainError(f"two parts of {names[0]!r} are carried to the same part of {names[1]!r}")
     out: Index = nearest
     return out
+
+
+def frozen_pieces(domain: Domain) -> NDArray[np.bool_]:
+    """Which straight pieces (p,) are not cut: frozen ones, and those tied to one that is."""
+    out: NDArray[np.bool_] = domain.segment_is_frozen[domain.piece_segments]
+    for pair in domain.periodic:
+        out[pair.pieces] = out[pair.pieces].any(axis=1, keepdims=True)
+    return out
+
+
+def with_partners(domain: Domain, names: Iterable[str]) -> list[str]:
+    """Names of boundaries, each once, and of those that are periodic with them."""
+    out = dict.fromkeys(names)
+    for pair in domain.periodic:
+        if {pair.first, pair.second} & out.keys():
+            out |= {pair.first: None, pair.second: None}
+    return list(out)
 
 
 def tied_cuts(

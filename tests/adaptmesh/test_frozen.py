@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import adaptmesh as am
-from adaptmesh.curves import Circle
+from adaptmesh.curves import Arc, Circle, Line
 from adaptmesh.errors import DomainError
 
 
@@ -84,6 +84,26 @@ def test_frozen_and_periodic_together():
     np.testing.assert_allclose(
         new.points[pairs[:, 1]] - new.points[pairs[:, 0]], [[1, 0]] * len(pairs)
     )
+
+
+def test_a_frozen_side_freezes_the_one_that_is_periodic_with_it():
+    domain = am.Domain.rectangle(0, 0, 1, 1).with_periodic("left", "right")
+    whole = am.generate(domain.with_frozen("left"), 0.1)
+    assert len(whole.edges_named("left")) == len(whole.edges_named("right")) == 1
+    mesh = am.generate(domain, lambda x: 0.02 + 0.2 * x[:, 1])
+    for frozen in (["left"], ["right"]):
+        new = am.adapt(mesh, 0.3, frozen=frozen)
+        assert new.validate().ok
+        assert edges_of(new, "left") == edges_of(mesh, "left")
+        assert edges_of(new, "right") == edges_of(mesh, "right")
+    curves = [Arc((0, 0), 1, 0, 1), Arc((3, 0), 1, 0, 1)]
+    ends = [c.point([0.0, 1.0]) for c in curves]
+    curves += [Line(ends[0][0], ends[1][0]), Line(ends[0][1], ends[1][1])]
+    wavy = am.Domain.from_curves(curves, names={"left": [0], "right": [1]})
+    mesh = am.generate(wavy.with_periodic("left", "right"), 0.1)
+    new = am.adapt(mesh, 0.3, frozen=["right"])
+    assert edges_of(new, "left") == edges_of(mesh, "left")
+    assert edges_of(new, "right") == edges_of(mesh, "right")
 
 
 def test_a_mesh_from_a_file(tmp_path):
