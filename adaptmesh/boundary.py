@@ -9,28 +9,17 @@ from numpy.typing import NDArray
 
 from metrics import ControlSpace
 
-from . import _core
-from .chords import Chords, Surroundings, chords_along
-from .curve_cuts import LONGEST_CHORD, equal_shares, measure_runs
+from .chords import Chords
 from .domain import Domain
+from .edge_lengths import measure_edges, sampler_of
 from .errors import BudgetError
 from .periodic import frozen_pieces, tied_chords, tied_cuts
+from .run_cuts import TURN, RunParts, surroundings_of, unit_chords
 from .spans import spans_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Index = NDArray[np.integer]
-
-
-# More chords at once would be a boundary of millions of vertices (and a gigabyte of memory).
-MOST_CHORDS = 8_000_000
-
-# By how much a curve may turn along an edge of a mesh, in degrees: a circle gets at least six.
-TURN = 60.0
-
-# A run with a chord longer than this is cut anew, up to so many times.
-LONG_CHORD = 1.3
-RECUTS = 4
 
 
 @dataclass(frozen=True)
@@ -91,22 +80,6 @@ class Outline:
         )
 
 
-def measure_edges(
-    sampler: _core.EdgeSampler, field: ControlSpace, most_points: float = np.inf
-) -> Floats:
-    """Metric lengths of the edges in a sampler, asking the field where it wants to know."""
-    while len(wanted := sampler.wanted()):
-        if len(wanted) > min(most_points * 2 / LONGEST_CHORD, MOST_CHORDS):
-            x, y = wanted[len(wanted) // 2]
-            raise BudgetError(
-                f"the boundary alone needs more than {most_points:,} vertices, many of them near "
-                f"({x:g}, {y:g}): ask for larger sizes, or allow more"
-            )
-        sampler.feed(field(wanted))
-    lengths: Floats = sampler.lengths()
-    return lengths
-
-
 def cut_outline(domain: Domain, field: ControlSpace, most_points: int) -> Outline:
     """Cut every segment and every curve of the domain into pieces of (nearly) unit metric length.
 
@@ -125,10 +98,7 @@ def cut_outline(domain: Domain, field: ControlSpace, most_points: int) -> Outlin
     kept = is_straight[domain.piece_segments]
     pieces = _canonical(vertices, number[domain.pieces[kept]])
     free = np.flatnonzero(~frozen_pieces(domain)[kept])
-    starts, stops = pieces[free].T
-    sampler = _core.edge_sampler(
-        vertices[starts], tensors[starts], vertices[stops], tensors[stops], LONGEST_CHORD
-    )
+    sampler = sampler_of(vertices, tensors, pieces[free])
     total = measure_edges(sampler, field, most_points).sum()
     _check_budget(len(vertices) + total, most_points)
     cuts, piece = sampler.cut()
@@ -150,7 +120,8 @@ def cut_outline(domain: Domain, field: ControlSpace, most_points: int) -> Outlin
     )
     if not curved.runs:
         return straight
-    chords, around = _cut_runs(domain, straight, field, most_points)
+    around, whole = surroundings_of(domain), RunParts.whole(domain)
+    chords = unit_chords(domain, whole, list(whole.u), around, field, most_points)
     chords = tied_chords(chords, curved.runs, domain.periodic, TURN, around)
     _check_budget(len(chords.points) + total, most_points)
     return _with_spans(straight, domain, chords, spans_of(chords, around), field)
@@ -174,70 +145,6 @@ def _check_budget(n: float, most_points: int) -> None:
             f"the boundary alone would have about {n:.3g} vertices, but max_vertices is "
             f"{most_points:,}: ask for larger sizes, or allow more"
         )
-
-
-def _cut_runs(
-    domain: Domain, straight: Outline, field: ControlSpace, most_points: int
-) -> tuple[Chords, Surroundings]:
-    """Chords of the runs, of unit length where they can be, and what else there is."""
-    curved = domain.curved
-    on_run = curved.segment_runs >= 0
-    run, u = curved.segment_runs[on_run], curved.segment_parameters[on_run]
-    turns = _turns(run, np.diff(domain.points[domain.segments[on_run]], axis=1)[:, 0])
-    least = np.maximum(1, np.ceil(turns / np.radians(TURN))).astype(int)
-    measured = measure_runs(curved.runs, run, u, field, most_points)
-    cuts = measured.unit_cuts(least)
-    around = Surroundings(
-        np.concatenate([straight.points, domain.holes, domain.seeds]),
-        len(straight.points),
-        straight.pieces,
-        curved.segment_curves[straight.piece_segments],
-        curved.curves,
-    )
-    for _ in range(RECUTS):
-        chords = chords_along(curved.runs, cuts, TURN, around)
-        straight_length = _straight_lengths(chords, field, most_points)
-        if (straight_length <= LONG_CHORD).all():
-            break
-        along = measured.lengths_between(chords.run, chords.u)
-        cuts = _recut(chords, cuts, along, straight_length)
-    else:
-        chords = chords_along(curved.runs, cuts, TURN, around)
-    return chords, around
-
-
-def _turns(run: Ints, d: Floats) -> Floats:
-    """By what angle each run turns, from the vectors of chords that are close to it."""
-    cross = d[:-1, 0] * d[1:, 1] - d[:-1, 1] * d[1:, 0]
-    turn = np.abs(np.arctan2(cross, (d[:-1] * d[1:]).sum(axis=1)))
-    weights = np.where(np.diff(run) == 0, turn, 0.0)
-    out: Floats = np.bincount(run[1:], weights, minlength=int(run.max()) + 1).astype(np.float64)
-    return out
-
-
-def _straight_lengths(chords: Chords, field: ControlSpace, most_points: int) -> Floats:
-    tensors = field(chords.points)
-    a, b = chords.ends.T
-    sampler = _core.edge_sampler(
-        chords.points[a], tensors[a], chords.points[b], tensors[b], LONGEST_CHORD
-    )
-    return measure_edges(sampler, field, most_points)
-
-
-def _recut(chords: Chords, cuts: list[Floats], along: Floats, straight: Floats) -> list[Floats]:
-    """Cuts of runs that have chords that are too long, so close that these become unit.
-
-    A chord whose ends lie across a thin layer, not along it, is longer in the metric than its
-    curve. Of its length l the part t along the curve goes with the number m of pieces that it is
-    cut into, and the rest with m^2, as the turn does: 1 = (t / m)^2 + (l^2 - t^2) / m^4.
-    """
-    rest = np.maximum(straight**2 - along**2, 0)
-    demand = np.sqrt(0.5 * (along**2 + np.sqrt(along**4 + 4 * rest)))
-    out = list(cuts)
-    for r in np.unique(chords.run[straight > LONG_CHORD]):
-        mine = chords.run == r
-        out[r] = equal_shares(chords.u[mine], demand[mine])
-    return out
 
 
 def _with_spans(

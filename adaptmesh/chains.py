@@ -20,9 +20,8 @@ from scipy.sparse.csgraph import connected_components
 from metrics import ControlSpace
 
 from . import _core
-from .boundary import measure_edges
-from .curve_cuts import LONGEST_CHORD
 from .domain import Domain
+from .edge_lengths import measure_edges, sampler_of, straight_lengths
 from .invariants.subject import edge_keys
 from .mesh import Mesh
 from .periodic import frozen_pieces
@@ -154,14 +153,13 @@ def _regions_leak(mesh: Mesh) -> bool:
 def recut(mesher: _core.Mesher, chains: Chains, domain: Domain, field: ControlSpace) -> Chains:
     """Cut the rows anew where their edges are not unit; what cannot be cut stays as it is."""
     points = mesher.points()[chains.vertices]
-    tensors = field(points)
     at = chains.edge_starts
-    lengths = measure_edges(_sampler(points, tensors, at, at + 1), field)
+    lengths = straight_lengths(points, np.stack([at, at + 1], axis=1), field)
     stretches = _stretches(chains, lengths, frozen_pieces(domain))
     if not len(stretches):
         return chains
     begin, end = stretches.T
-    sampler = _sampler(points, tensors, begin, end)
+    sampler = sampler_of(points, field(points), stretches)
     measure_edges(sampler, field)
     cuts, owner = sampler.cut()
     vector = (points[end] - points[begin])[owner]
@@ -185,12 +183,6 @@ def recut(mesher: _core.Mesher, chains: Chains, domain: Domain, field: ControlSp
         _replaced(chains.vertices, stretches, np.split(vertices, first[1:-1])),
         _replaced(chains.places, stretches, np.split(places, first[1:-1])),
         (chains.first + _offsets(grown)).astype(np.int32),
-    )
-
-
-def _sampler(points: Floats, tensors: Floats, starts: Ints, ends: Ints) -> _core.EdgeSampler:
-    return _core.edge_sampler(
-        points[starts], tensors[starts], points[ends], tensors[ends], LONGEST_CHORD
     )
 
 

@@ -18,15 +18,12 @@ from numpy.typing import NDArray
 from metrics import ControlSpace
 from metrics.tensor import lengths
 
+from .edge_lengths import LONGEST_CHORD
 from .errors import BudgetError
 from .runs import Run, points_on
 
 Floats = NDArray[np.float64]
 Index = NDArray[np.integer]
-
-# The metric is looked at this closely along segments, in metric length: a layer that meets the
-# boundary between two looks would be missed there for good.
-LONGEST_CHORD = 0.125
 
 # These are explained in core/edge_sampler.hpp, which does the same on straight lines.
 AGREEMENT = 0.05

@@ -14,8 +14,9 @@ import metrics
 from metrics import ControlSpace
 
 from . import _core
-from .boundary import Outline, cut_outline, measure_edges
+from .boundary import Outline, cut_outline
 from .domain import Domain
+from .edge_lengths import measure_edges
 from .errors import BudgetError, DomainError
 from .mesh import Mesh
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..runs import derivatives_on, points_on
+from ..on_runs import places_on_runs
 from .subject import Bools, Finding, Floats, Index, Ints, Subject, edge_keys, finding
 
 if TYPE_CHECKING:
@@ -23,12 +23,6 @@ TOLERANCE = 1e-12
 
 QUADRATURE = 1e-9
 """Areas between curves and their chords are right to this share."""
-
-NEWTON_STEPS = 8
-"""Of the search for the nearest place of a curve; it converges quadratically from a chord of it."""
-
-REACH = 0.15
-"""Curves are nearer to the chords of the domain than this share of the chord's length."""
 
 
 class DomainSubject(Subject):
@@ -114,48 +108,14 @@ class DomainSubject(Subject):
         return out
 
     @cached_property
-    def on_runs(self) -> tuple[Ints, Floats, Ints]:
+    def on_runs(self) -> tuple[Index, Floats, Index]:
         """Vertices of constrained edges on curves, in order: the run, the parameter, the vertex."""
-        import shapely
-
-        curved = self.domain.curved
-        chords = np.flatnonzero(curved.segment_runs >= 0)
-        a, b = (self.corners[i] for i in self.domain.segments[chords].T)
         vertices = np.unique(self.mesh.edges)
-        tree = shapely.STRtree(shapely.points(self.points[vertices]))
-        lines = shapely.linestrings(np.stack([a, b], axis=1))
-        chord, v = tree.query(lines, "dwithin", distance=REACH * shapely.length(lines))
-        v, run = vertices[v], curved.segment_runs[chords[chord]].astype(np.int64)
-        u = self._nearest(v, run, curved.segment_parameters[chords[chord]])
-        ends = np.array([r.length for r in curved.runs])[run]
-        for end in (np.zeros(len(u)), ends):  # what rounding leaves of a corner's parameter
-            u = np.where(np.abs(u - end) < 1e-9, end, u)
-        off = self.scale(points_on(curved.runs, run, u)) - self.points[v]
-        on = np.hypot(*off.T) <= self.tolerance
-        order = np.lexsort((u[on], run[on]))
-        run, u, v = run[on][order], u[on][order], v[on][order]
-        again = (np.diff(run, prepend=-1) == 0) & (np.diff(v, prepend=-1) == 0)
-        return run[~again], u[~again], v[~again]
-
-    def _nearest(self, vertex: Index, run: Index, u: Floats) -> Floats:
-        """The parameters of runs, about in these ranges (k, 2), nearest to points of the mesh."""
-        runs = self.domain.curved.runs
-        p = self.mesh.points[vertex]
-        a, b = (points_on(runs, run, u[:, i]) for i in (0, 1))
-        along = ((p - a) * (b - a)).sum(axis=1) / ((b - a) ** 2).sum(axis=1)
-        length = u[:, 1] - u[:, 0]
-        low = np.maximum(u[:, 0] - length, 0)
-        high = np.minimum(u[:, 1] + length, [runs[r].length for r in run])
-        out = np.clip(u[:, 0] + along * length, low, high)
-        for _ in range(NEWTON_STEPS):
-            d = derivatives_on(runs, run, out)
-            step = ((p - points_on(runs, run, out)) * d).sum(axis=1) / (d**2).sum(axis=1)
-            out = np.clip(out + step, low, high)
-        nearest: Floats = out
-        return nearest
+        run, u, k = places_on_runs(self.domain, self.mesh.points[vertices], self.true_tolerance)
+        return run, u, vertices[k]
 
     @cached_property
-    def run_steps(self) -> tuple[Ints, Floats, Ints, Ints]:
+    def run_steps(self) -> tuple[Index, Floats, Index, Ints]:
         """Steps along runs, in order: the run, both parameters, both vertices, and the edge, or -1.
 
         A run that does not begin or end at its corner has a step without an edge too.
