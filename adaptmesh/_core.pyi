@@ -24,6 +24,9 @@ def delaunay(points: Floats) -> tuple[Ints, Ints]: ...
 def triangulate(
     points: Floats, segments: Ints, holes: Floats, seeds: Floats, nesting: bool
 ) -> tuple[Ints, Ints, Ints, Ints, Bools]: ...
+def decimate(
+    points: Floats, tensors: Floats, edges: Ints, kind: Ints, share: float
+) -> tuple[Ints, Ints, Ints, NDArray[np.int64]]: ...
 def edge_sampler(
     starts: Floats,
     start_tensors: Floats,

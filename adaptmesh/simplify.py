@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 import metrics
 
 from .arrangement import Faces, Repair, Repairs, at, find_faces
+from .arrangement.distance import distance
 from .arrangement.numbering import used_points
 from .decimate import Decimated, decimate, turned
 from .domain import Domain
@@ -183,24 +184,26 @@ def _without_loops(
 
 def _record(points: Floats, result: Decimated, log: list[Repair]) -> float:
     """A record of each chain of points left out; returns the largest displacement."""
-    from .arrangement.distance import distance
-
-    largest = 0.0
-    for (a, b), dropped in zip(result.edges.tolist(), result.dropped, strict=True):
-        if not dropped:
-            continue
-        p = points[dropped]
-        start, end = (np.broadcast_to(points[k], p.shape) for k in (a, b))
-        off = distance(p, start, end)[0]
-        x, y = p[off.argmax()].tolist()
-        n = len(dropped)
+    counts = np.diff(result.starts)
+    edge = np.repeat(np.arange(len(counts)), counts)
+    start, end = points[result.edges[edge].T]
+    off = distance(points[result.passed], start, end)[0]
+    order = np.lexsort((off, edge))  # of each edge, the farthest point comes last
+    passing = np.flatnonzero(counts)
+    farthest = order[result.starts[passing + 1] - 1]
+    for (a, b), n, v, d in zip(
+        points[result.edges[passing]].tolist(),
+        counts[passing].tolist(),
+        points[result.passed[farthest]].tolist(),
+        off[farthest].tolist(),
+        strict=True,
+    ):
         what = (
-            f"{n} point{'s' if n > 1 else ''} between {at(*points[a])} and {at(*points[b])} left "
-            f"out, {off.max():.3g} off the line"
+            f"{n} point{'s' if n > 1 else ''} between {at(*a)} and {at(*b)} left out, {d:.3g} off "
+            "the line"
         )
-        log.append(Repair("points", (x, y), what, float(off.max())))
-        largest = max(largest, float(off.max()))
-    return largest
+        log.append(Repair("points", (v[0], v[1]), what, d))
+    return float(off.max(initial=0.0))
 
 
 def _rebuilt(domain: Domain, lines: _Lines, result: Decimated, lone: Ints) -> Domain:

@@ -5,10 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from reference.decimate import decimate as slowly
 from reference.dirty import star
 
 import adaptmesh as am
 from adaptmesh.convert import to_shapely
+from adaptmesh.decimate import decimate
 
 ICELAND = Path(__file__).parents[2] / "examples" / "data" / "iceland.geojson"
 
@@ -153,6 +155,35 @@ def test_random_neighbours(seed):
     if "loop" not in dropped.counts:
         between = shapely.hausdorff_distance(outline(domain), outline(simple))
         assert between <= dropped.displacement * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_same_points_go_as_by_the_slow_way(seed):
+    """Rings on a few levels of coordinates, so that some points are collinear and some offs tie."""
+    rng = np.random.default_rng(seed)
+    polygons = {str(k): np.round(star(rng, n=120, wild=0.1), rng.integers(2, 4)) for k in range(2)}
+    domain, _ = am.repair(polygons)
+    edges = domain.pieces.astype(np.int64)
+    tensors = np.broadcast_to(
+        [rng.uniform(4, 400), 0.0, rng.uniform(4, 400)], (len(domain.points), 3)
+    )
+    kind = domain.segment_tags[domain.piece_segments]
+    fast = decimate(domain.points, tensors, edges, kind, 0.3)
+    passed = np.split(fast.passed, fast.starts[1:-1])
+    assert [
+        (*ends, e, sorted(p.tolist()))
+        for ends, e, p in zip(fast.edges.tolist(), fast.source.tolist(), passed, strict=True)
+    ] == slowly(domain.points, tensors, edges, kind, 0.3)
+    assert 10 < len(fast.passed) < len(domain.points)
+
+
+def test_a_straight_line_of_many_points():
+    n = 50_000
+    bottom = np.stack([np.linspace(0, 1, n), np.zeros(n)], axis=1)
+    domain = am.Domain.polygon(np.concatenate([bottom, [(1, 1), (0, 1)]]))
+    simple, dropped = am.simplify(domain, 2.0)
+    assert len(simple.points) == 4
+    assert dropped.displacement < 1e-15
 
 
 def test_bad_arguments():
