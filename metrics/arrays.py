@@ -71,10 +71,9 @@ def as_indices(items: ArrayLike, columns: int, count: int, kind: str) -> Ints:
         raise MetricError(f"{kind}s must have the shape (m, {columns}), not {raw.shape}")
     if raw.size and raw.dtype.kind not in "iu":
         raise MetricError(f"{kind}s must be integers, not {raw.dtype}")
-    numbers = raw.astype(np.int64, copy=False)
-    wrong = ((numbers < 0) | (numbers >= count)).any(axis=1)
-    if wrong.any():
-        i = int(wrong.argmax())
+    if raw.size and not (int(raw.min()) >= 0 and int(raw.max()) < count):
+        numbers = raw.astype(np.int64, copy=False)
+        i = int(((numbers < 0) | (numbers >= count)).any(axis=1).argmax())
         raise MetricError(
             f"{kind} {i} = {tuple(raw[i].tolist())} is out of range: there are {count} points, "
             "numbered from 0"

@@ -21,6 +21,8 @@ __all__ = ["Complexity", "complexity", "edge_lengths", "mesh_edges", "metric_are
 
 Numbers = NDArray[np.intp]
 
+_SPARSE = 16  # with so many times more numbers than corners, most have no triangle
+
 _BLOCK = 1 << 15  # segments or triangles measured at a time: tens of megabytes
 
 # Gauss-Legendre, 5 points, on [0, 1].
@@ -130,10 +132,12 @@ def mesh_edges(triangles: ArrayLike) -> tuple[Ints, Ints]:
         ``sides[t, i]`` is the number of the edge opposite vertex i of triangle t.
     """
     t = as_triangles(triangles, np.iinfo(np.int32).max)
-    ends = np.sort(t[:, [[1, 2], [2, 0], [0, 1]]], axis=2).reshape(-1, 2).astype(np.int64)
-    keys, sides = np.unique(ends[:, 0] << 32 | ends[:, 1], return_inverse=True)
-    edges: Ints = np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1).astype(np.int32)
-    return edges, sides.reshape(-1, 3).astype(np.int32)
+    count = int(t.max(initial=-1)) + 1
+    if count <= _SPARSE * t.size:
+        return _core.mesh_edges(t, count)
+    used, dense = np.unique(t, return_inverse=True)
+    edges, sides = _core.mesh_edges(dense.reshape(-1, 3).astype(np.int32), len(used))
+    return used[edges], sides
 
 
 class Complexity(NamedTuple):

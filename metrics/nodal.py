@@ -28,10 +28,6 @@ __all__ = [
     "predicted_vertices",
 ]
 
-# Gauss-Legendre, 8 points, on [0, 1].
-_x, _w = np.polynomial.legendre.leggauss(8)
-_GAUSS_X, _GAUSS_W = 0.5 * (_x + 1), 0.5 * _w
-
 
 def nodal_lengths(
     points: ArrayLike, edges: ArrayLike, metric: Any, rule: str = "quadrature"
@@ -94,11 +90,7 @@ def nodal_areas(points: ArrayLike, triangles: ArrayLike, metric: Any) -> Floats:
     """
     p = as_points(points)
     t = as_triangles(triangles, len(p))
-    densities = 0.5 * np.log(tensor.det(at_vertices(p, metric)))
-    corners = p[t]
-    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    out: Floats = (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) * _mean_exponential(densities[t])
-    return out
+    return _core.areas(p, t, at_vertices(p, metric))
 
 
 def nodal_qualities(points: ArrayLike, triangles: ArrayLike, metric: Any) -> Floats:
@@ -174,11 +166,7 @@ def at_vertices(points: Floats, metric: Any) -> Floats:
 
 
 def _by_quadrature(start: Floats, end: Floats, vectors: Floats) -> Floats:
-    first, change = _core.log(start), _core.log(end) - _core.log(start)
-    out = np.zeros(len(vectors))
-    for x, w in zip(_GAUSS_X, _GAUSS_W, strict=True):
-        out += w * _length_at(_core.exp(first + x * change), vectors)
-    return out
+    return _core.lengths_by_quadrature(_core.log(start), _core.log(end), vectors)
 
 
 def _by_logarithmic_mean(start: Floats, end: Floats, vectors: Floats) -> Floats:
@@ -207,36 +195,4 @@ def _logarithmic_mean(a: Floats, b: Floats) -> Floats:
     x = np.log(np.divide(a, b, out=np.ones_like(a), where=b > 0))
     near = np.abs(x) < 1e-8
     out: Floats = b * np.where(near, 1 + x / 2, np.expm1(x) / np.where(near, 1, x))
-    return out
-
-
-def _mean_exponential(values: Floats) -> Floats:
-    """The integrals (m,) of exp(f) over the triangle of area 1/2, f linear with values (m, 3).
-
-    The second divided difference of exp. Where the values differ little, by the series of complete
-    symmetric polynomials h_k / (k + 2)! in the differences from their mean.
-    """
-    mean = values.mean(axis=1)
-    low, middle, high = np.sort(values - mean[:, None], axis=1).T
-    p2 = -(low * middle + middle * high + high * low)  # h_k = p2 h_(k-2) + p3 h_(k-3), as h_1 = 0
-    p3 = low * middle * high
-    h = [np.ones_like(p2), np.zeros_like(p2), p2]
-    series, factorial = 0.5 + p2 / 24, 24.0
-    for k in range(3, 16):
-        h.append(p2 * h[k - 2] + p3 * h[k - 3])
-        factorial *= k + 2
-        series = series + h[k] / factorial
-    spread = high - low
-    far = spread > 1
-    gap = np.where(far, spread, 1)
-    differences = _exponential_slope(middle, high) - _exponential_slope(low, middle)
-    out: Floats = np.exp(mean) * np.where(far, differences / gap, series)
-    return out
-
-
-def _exponential_slope(a: Floats, b: Floats) -> Floats:
-    """(e^b - e^a) / (b - a)."""
-    gap = b - a
-    near = gap < 1e-8
-    out: Floats = np.exp(a) * np.where(near, 1 + gap / 2, np.expm1(gap) / np.where(near, 1, gap))
     return out

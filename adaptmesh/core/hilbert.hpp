@@ -2,13 +2,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "adaptmesh/core/point.hpp"
 #include "adaptmesh/core/triangulation.hpp"
+#include "metrics/core/counting.hpp"
 
 namespace adaptmesh {
 
@@ -42,20 +42,6 @@ inline std::uint32_t hilbert_key(std::uint32_t x, std::uint32_t y) {
     return key;
 }
 
-// Sorts entries by their upper 32 bits; equal ones keep their order. `scratch` is of the same size.
-inline void radix_sort(std::vector<std::uint64_t>& entries, std::vector<std::uint64_t>& scratch) {
-    constexpr int DIGIT = 11, PASSES = 3;
-    constexpr std::uint64_t MASK = (1u << DIGIT) - 1;
-    for (int pass = 0; pass < PASSES; ++pass) {
-        const int shift = 32 + pass * DIGIT;
-        std::array<std::size_t, MASK + 2> start{};
-        for (std::uint64_t e : entries) ++start[(e >> shift & MASK) + 1];
-        for (std::size_t d = 1; d <= MASK; ++d) start[d] += start[d - 1];
-        for (std::uint64_t e : entries) scratch[start[e >> shift & MASK]++] = e;
-        entries.swap(scratch);
-    }
-}
-
 namespace detail {
 
 inline void hilbert_sort(const std::vector<Point>& points, Index* first, Index* last) {
@@ -76,13 +62,14 @@ inline void hilbert_sort(const std::vector<Point>& points, Index* first, Index* 
         return std::min(std::uint32_t(part * CELLS), CELLS - 1);
     };
     const std::size_t count = std::size_t(last - first);
-    std::vector<std::uint64_t> entries(count), scratch(count);
+    std::vector<std::uint64_t> entries(count), scratch;
     for (std::size_t k = 0; k < count; ++k) {
         const Point p = points[first[k]];
         const std::uint64_t key = hilbert_key(cell(p.x, low.x), cell(p.y, low.y));
         entries[k] = key << 32 | std::uint32_t(first[k]);
     }
-    radix_sort(entries, scratch);
+    const auto key_of = [](std::uint64_t entry) { return std::uint32_t(entry >> 32); };
+    metrics::sort_by_number(entries, scratch, key_of);
     for (std::size_t k = 0; k < count; ++k) first[k] = Index(entries[k] & 0xffffffffu);
 
     for (std::size_t begin = 0, end; begin < count; begin = end) {

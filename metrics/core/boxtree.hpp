@@ -18,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "metrics/core/counting.hpp"
+
 namespace metrics {
 
 struct Box {
@@ -67,7 +69,8 @@ inline std::vector<std::int32_t> curve_order(const std::vector<Box>& boxes) {
             spread_bits(cell(box.y0 + 0.5 * (box.y1 - box.y0), all.y0, side_y)) << 1;
         keys[i] = std::uint64_t(code) << 32 | i;
     }
-    std::sort(keys.begin(), keys.end());
+    std::vector<std::uint64_t> spare;
+    sort_by_number(keys, spare, [](std::uint64_t key) { return std::uint32_t(key >> 32); });
     std::vector<std::int32_t> order(boxes.size());
     for (std::size_t k = 0; k < keys.size(); ++k) order[k] = std::int32_t(keys[k] & 0xffffffff);
     return order;

@@ -16,18 +16,15 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "metrics/core/boxtree.hpp"
+#include "metrics/core/edge_sides.hpp"
 #include "metrics/core/seedgrid.hpp"
 
 namespace metrics {
-
-using Index = std::int32_t;
 
 // Where a point is: its triangle and its barycentric coordinates there, none negative. For a point
 // outside, those of the nearest point of the border, and how far away that is.
@@ -56,7 +53,7 @@ class Locator {
             const Index* v = triangles + 3 * t;
             triangles_.push_back({{v[0], v[1], v[2]}, {NO_TRIANGLE, NO_TRIANGLE, NO_TRIANGLE}});
         }
-        find_neighbours();
+        find_neighbours(triangles);
         plant_trees();
         sow_seeds();
     }
@@ -194,58 +191,27 @@ class Locator {
         return share;
     }
 
-    // Sides sorted by their smaller vertex (by counting), then by the other: the two sides of one
-    // edge become consecutive.
-    void find_neighbours() {
-        std::vector<std::size_t> first(vertices_.size() + 1, 0);
-        for_each_side([&](Index low, Index, Side) { ++first[low + 1]; });
-        std::partial_sum(first.begin(), first.end(), first.begin());
-        std::vector<EdgeSide> sides(3 * triangles_.size());
-        std::vector<std::size_t> next(first.begin(), first.end() - 1);
-        for_each_side([&](Index low, Index high, Side side) { sides[next[low]++] = {high, side}; });
-        for (std::size_t low = 0; low < vertices_.size(); ++low) {
-            const auto begin = sides.begin() + first[low], end = sides.begin() + first[low + 1];
-            std::sort(begin, end, [](const EdgeSide& s, const EdgeSide& t) {
-                return s.high != t.high ? s.high < t.high : s.side.triangle < t.side.triangle;
-            });
-            for (auto s = begin; s != end;) {
-                const auto one_edge = [&](const EdgeSide& t) { return t.high == s->high; };
-                const auto stop = std::find_if_not(s, end, one_edge);
-                if (stop - s > 1) join(Index(low), s->high, s->side, s[1].side, stop - s);
-                s = stop;
-            }
-        }
-    }
-
-    struct EdgeSide {
-        Index high;
-        Side side;
-    };
-
-    // Calls visit(smaller vertex, larger vertex, side) for every side of every triangle.
-    template <typename Visit>
-    void for_each_side(Visit visit) const {
-        for (Index t = 0; t < triangle_count(); ++t) {
-            for (int i = 0; i < 3; ++i) {
-                const Index from = start(t, i), to = start(t, (i + 1) % 3);
-                visit(std::min(from, to), std::max(from, to), Side{t, i});
-            }
-        }
+    void find_neighbours(const Index* triangles) {
+        const EdgeSides sides(triangles, triangles_.size(), vertices_.size());
+        sides.for_each_edge([&](Index low, Index high, const auto* side, const auto* end) {
+            if (end - side > 1) join(low, high, side[0].side, side[1].side, end - side);
+        });
     }
 
     // The vertex that side i of triangle t runs from, counter-clockwise.
     Index start(Index t, int i) const { return triangles_[t].v[(i + 1) % 3]; }
 
-    void join(Index low, Index high, Side here, Side there, std::ptrdiff_t count) {
-        if (count > 2 || start(here.triangle, here.edge) == start(there.triangle, there.edge)) {
+    void join(Index low, Index high, Index here, Index there, std::ptrdiff_t count) {
+        const Index t = here / 3, u = there / 3;
+        const int i = here % 3, j = there % 3;
+        if (count > 2 || start(t, i) == start(u, j)) {
             throw std::invalid_argument(
-                "triangles " + std::to_string(here.triangle) + " and " +
-                std::to_string(there.triangle) + " overlap at the edge (" + std::to_string(low) +
-                ", " + std::to_string(high) +
+                "triangles " + std::to_string(t) + " and " + std::to_string(u) +
+                " overlap at the edge (" + std::to_string(low) + ", " + std::to_string(high) +
                 "): they lie on the same side of it, or it has more than two triangles");
         }
-        triangles_[here.triangle].n[here.edge] = there.triangle;
-        triangles_[there.triangle].n[there.edge] = here.triangle;
+        triangles_[t].n[i] = u;
+        triangles_[u].n[j] = t;
     }
 
     void plant_trees() {

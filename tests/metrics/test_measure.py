@@ -178,6 +178,28 @@ def test_mesh_edges():
     np.testing.assert_array_equal(sides, [[3, 1, 0], [4, 2, 1]])
 
 
+triples = st.lists(st.lists(st.integers(0, 9), min_size=3, max_size=3), max_size=30)
+
+
+@given(triples, st.sampled_from([1, 3, 200_000_000]))
+def test_mesh_edges_are_those_of_a_dictionary(triangles, step):
+    t = step * np.array(triangles, np.int64).reshape(-1, 3)
+    edges, sides = mesh_edges(t)
+    ends = [[tuple(sorted((v[i - 2], v[i - 1]))) for i in range(3)] for v in t.tolist()]
+    number = {edge: k for k, edge in enumerate(sorted({e for three in ends for e in three}))}
+    assert [tuple(e) for e in edges.tolist()] == list(number)
+    assert sides.tolist() == [[number[e] for e in three] for three in ends]
+    assert edges.dtype == sides.dtype == np.int32
+
+
+def test_mesh_edges_around_a_hub():
+    spokes = np.random.default_rng(3).permutation(np.arange(1, 100))
+    hub = np.stack([np.zeros(99, int), spokes, np.roll(spokes, -1)], axis=1)
+    edges, sides = mesh_edges(hub)
+    np.testing.assert_array_equal(edges[:99], [[0, k] for k in range(1, 100)])
+    np.testing.assert_array_equal(edges[sides[:, 2], 1], spokes)
+
+
 # --- complexity --------------------------------------------------------------------------------
 
 
