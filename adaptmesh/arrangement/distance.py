@@ -7,14 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _core
-
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-
-PAIRS_AT_ONCE = 20_000_000
-"""Bound on the pairs of neighbouring boxes that are held in memory."""
 
 
 def first_of_equal(points: Floats) -> Ints:
@@ -63,14 +57,6 @@ def distance(p: Floats, a: Floats, b: Floats) -> tuple[Floats, Floats]:
     return np.hypot(*(p - foot).T), foot
 
 
-def opposite(a: Floats, b: Floats, c: Floats, d: Floats) -> Bools:
-    """Whether c and d are strictly on different sides of the line ab, by exact signs."""
-    args = [np.ascontiguousarray(x) for x in (a, b, c, d)]
-    of_c, of_d = _core.orient2d(*args[:3]), _core.orient2d(args[0], args[1], args[3])
-    out: Bools = of_c * of_d < 0
-    return out
-
-
 def meeting(first: Floats, second: Floats) -> Floats:
     """Where segments (n, 2, 2) that cross each other meet, rounded; never outside of their ends."""
     (a, b), (c, d) = first.transpose(1, 0, 2), second.transpose(1, 0, 2)
@@ -81,22 +67,3 @@ def meeting(first: Floats, second: Floats) -> Floats:
     t = np.clip(np.where(flat, 0.5, along / np.where(flat, 1.0, across)), 0.0, 1.0)
     out: Floats = np.where((t < 0.5)[:, None], a + t[:, None] * u, b - (1.0 - t)[:, None] * u)
     return out
-
-
-def meeting_boxes(ends: Floats, wanted: Ints, tolerance: float) -> Iterator[tuple[Ints, Ints]]:
-    """Pairs (wanted, any) of segments whose boxes meet, a bounded number at once."""
-    import shapely
-
-    low, high = ends.min(axis=1) - tolerance, ends.max(axis=1) + tolerance
-    # A tree sees only the box of a line; a diagonal is made faster than a rectangle.
-    boxes = shapely.linestrings(np.stack([low, high], axis=1))
-    tree = shapely.STRtree(boxes)
-    # The largest come first: those after them meet no more than they do.
-    wanted = wanted[np.argsort(-(high - low)[wanted].sum(axis=1), kind="stable")]
-    start, step = 0, max(1, PAIRS_AT_ONCE // len(ends))
-    while start < len(wanted):
-        some = wanted[start : start + step]
-        i, j = tree.query(boxes[some])
-        yield some[i], j
-        start += step
-        step = max(1, PAIRS_AT_ONCE * step // max(10 * len(i), PAIRS_AT_ONCE // 10))

@@ -20,14 +20,15 @@ is nearer than the tolerance. The exact triangulation of the result (`faces`) is
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from ..errors import DomainError
-from .distance import distance, meeting, meeting_boxes, near_points, opposite
+from .distance import distance, meeting, near_points
 from .record import Repair, at
 
 Floats = NDArray[np.float64]
@@ -226,52 +227,23 @@ class _Noding:
 
     def look(self) -> tuple[Pairs, Pairs]:
         """Pieces and points that lie on them, or nearly; and pairs of pieces that cross."""
-        near, crossing, count = [], [], 0
-        for i, j in self._neighbours():
-            near += [
-                self._hits(piece, self.pieces[other, end])
-                for piece, other in ((i, j), (j, i))
-                for end in (0, 1)
-            ]
-            crossing.append(self._crossings(i, j))
-            count += len(crossing[-1][0])
-            if count > MOST_CROSSINGS:
-                x, y = self._meeting(*crossing[-1])[0]
-                raise DomainError(
-                    f"segments cross at more than {MOST_CROSSINGS:,} places, one of them "
-                    f"{at(x, y)}: are these outlines, and their points in the right order?"
-                )
+        near, crossings = _core.encounters(
+            self.points,
+            self.pieces.astype(np.int32),
+            self.unseen,
+            self.tolerance,
+            MOST_CROSSINGS,
+        )
+        piece, v = near.astype(np.int64).T
+        i, j = crossings.astype(np.int64).T
+        if len(i) > MOST_CROSSINGS:
+            x, y = self._meeting(i[:1], j[:1])[0]
+            raise DomainError(
+                f"segments cross at more than {MOST_CROSSINGS:,} places, one of them "
+                f"{at(x, y)}: are these outlines, and their points in the right order?"
+            )
         self.unseen[:] = False
-        return _joined(near), _joined(crossing)
-
-    def _neighbours(self) -> Iterator[tuple[Ints, Ints]]:
-        """Pairs of pieces, one of them unseen, with boxes no farther than the tolerance."""
-        yield np.empty(0, int), np.empty(0, int)
-        unseen = np.flatnonzero(self.unseen)
-        if len(unseen):
-            for i, j in meeting_boxes(self.points[self.pieces], unseen, self.tolerance):
-                once = (i < j) | (~self.unseen[j] & (i != j))
-                yield i[once], j[once]
-
-    def _hits(self, piece: Ints, v: Ints) -> tuple[Ints, Ints]:
-        """Those pairs where the point is nearly on the piece, and divides it into shorter ones."""
-        ends = self.pieces[piece]
-        p, (a, b) = self.points[v], self.points[ends].transpose(1, 0, 2)
-        off, _ = distance(p, a, b)
-        length = np.hypot(*(b - a).T)
-        shorter = (np.hypot(*(p - a).T) < length) & (np.hypot(*(p - b).T) < length)
-        hit = (off <= self.tolerance) & shorter & (ends != v[:, None]).all(axis=1)
-        return piece[hit], v[hit]
-
-    def _crossings(self, i: Ints, j: Ints) -> Pairs:
-        """Those pairs of pieces that cross, by exact signs."""
-        apart = (self.pieces[i][:, :, None] != self.pieces[j][:, None, :]).all(axis=(1, 2))
-        i, j = i[apart], j[apart]
-        for one, other in ((0, 1), (1, 0)):
-            ends = [self.points[self.pieces[k]].transpose(1, 0, 2) for k in (i, j)]
-            cross = opposite(*ends[one], *ends[other])
-            i, j = i[cross], j[cross]
-        return i, j
+        return (piece, v), (i, j)
 
     def _meeting(self, i: Ints, j: Ints) -> Floats:
         return meeting(self.points[self.pieces[i]], self.points[self.pieces[j]])
@@ -282,8 +254,6 @@ class _Noding:
         """Divide pieces at points that lie on them, or nearly."""
         for pieces in crossings:  # to be looked at again, those of them that stay
             self.unseen[pieces] = True
-        unique = np.unique(piece * len(self.points) + v)
-        piece, v = unique // len(self.points), unique % len(self.points)
         a, b = self.points[self.pieces[piece]].transpose(1, 0, 2)
         off, foot = distance(self.points[v], a, b)
         moves = self._which_move(piece, v, off)
@@ -348,8 +318,3 @@ class _Noding:
         self.pieces = np.concatenate([self.pieces, new])
         self.segment = np.concatenate([self.segment, segment])
         self.unseen = np.concatenate([self.unseen, np.ones(len(new), bool)])
-
-
-def _joined(pairs: list[Pairs]) -> Pairs:
-    first, second = (np.concatenate(column) for column in zip(*pairs, strict=True))
-    return first, second

@@ -7,5 +7,5 @@ NB_MODULE(_core, m) {
     bind_triangulate(m);
     bind_mesher(m);
     bind_transfer(m);
-    bind_decimate(m);
+    bind_outlines(m);
 }

@@ -427,7 +427,7 @@ def test_a_lattice_ring_has_the_area_of_what_it_winds_around(ring):
     try:
         domain, _ = am.repair(ring)
     except am.DomainError as error:
-        assert expected == 0, str(error)
+        assert expected < 1e-12, str(error)  # a sum of rounded areas
         return
     assert domain.area == pytest.approx(expected, rel=1e-9)
     assert sum(region_areas(domain).values()) == pytest.approx(domain.area, rel=1e-12)
