@@ -234,13 +234,16 @@ def _divided(points: Floats, lines: Ints, owners: Ints) -> tuple[Ints, Ints]:
     on = (_core.orient2d(points[a], points[b], points[point]) == 0) & (point != a) & (point != b)
     line, point = line[on], point[on]
     along = ((points[point] - points[lines[line, 0]]) ** 2).sum(axis=1)
-    out, out_owners = [], []
-    for k, (a, b) in enumerate(lines.tolist()):
-        mine = line == k
-        between = point[mine][np.argsort(along[mine])].tolist()
-        out += list(itertools.pairwise([a, *between, b]))
-        out_owners += [owners[k]] * (len(between) + 1)
-    return np.array(out, np.int32).reshape(-1, 2), np.array(out_owners, np.int32)
+    order = np.lexsort([along, line])
+    stops = np.searchsorted(line[order], np.arange(len(lines) + 1))
+    between = [point[order[i:j]] for i, j in itertools.pairwise(stops)]
+    out = [
+        pair
+        for (a, b), passed in zip(lines.tolist(), between, strict=True)
+        for pair in itertools.pairwise([a, *passed.tolist(), b])
+    ]
+    out_owners = np.repeat(owners, np.diff(stops) + 1)
+    return np.array(out, np.int32).reshape(-1, 2), out_owners.astype(np.int32)
 
 
 def extent_of(curves: Sequence[Curve]) -> float:

@@ -144,7 +144,7 @@ def join(curves: Sequence[Curve], tags: Ints, corner_angle: float, tolerance: fl
     """
     pieces = _pieces(curves)
     ends = np.concatenate([_ends(curves, pieces, 0), _ends(curves, pieces, 1)])
-    node = _nodes(ends, tolerance)
+    node = places_of(ends, tolerance)
     at: list[list[int]] = [[] for _ in range(node.max() + 1)]
     for e, v in enumerate(node.tolist()):
         at[v].append(e)
@@ -183,16 +183,16 @@ def _pieces(curves: Sequence[Curve]) -> list[Piece]:
 
 def _ends(curves: Sequence[Curve], pieces: list[Piece], which: int) -> Floats:
     """Where the pieces begin or end, (n, 2)."""
-    out = np.empty((len(pieces), 2))
-    owner = np.array([p.curve for p in pieces])
-    t = np.array([p.t1 if which else p.t0 for p in pieces])
-    t[(t == 1) & np.array([curves[i].is_closed for i in owner])] = 0  # ends exactly where it began
-    for i, curve in enumerate(curves):
-        out[owner == i] = curve.point(t[owner == i])
-    return out
+    out = []
+    for i, found in itertools.groupby(pieces, key=lambda piece: piece.curve):
+        t = np.array([piece.t1 if which else piece.t0 for piece in found])
+        if curves[i].is_closed:
+            t[t == 1] = 0  # it ends exactly where it began
+        out.append(curves[i].point(t))
+    return np.concatenate(out)
 
 
-def _nodes(ends: Floats, tolerance: float) -> NDArray[np.intp]:
+def places_of(ends: Floats, tolerance: float) -> NDArray[np.intp]:
     """The number of the place of each end; ends within the tolerance share one."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components

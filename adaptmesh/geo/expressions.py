@@ -42,14 +42,14 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
     "Tanh": math.tanh,
 }  # fmt: skip
 
-_BINARY: list[dict[str, Callable[[float, float], float]]] = [
-    {"||": lambda a, b: float(bool(a or b))},
-    {"&&": lambda a, b: float(bool(a and b))},
-    {"==": operator.eq, "!=": operator.ne},
-    {"<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge},
-    {"+": operator.add, "-": operator.sub},
-    {"*": operator.mul, "/": operator.truediv, "%": math.fmod},
-]
+_BINARY: dict[str, tuple[int, Callable[[float, float], float]]] = {  # level: 0 binds weakest
+    "||": (0, lambda a, b: float(bool(a or b))),
+    "&&": (1, lambda a, b: float(bool(a and b))),
+    "==": (2, operator.eq), "!=": (2, operator.ne),
+    "<": (3, operator.lt), ">": (3, operator.gt), "<=": (3, operator.le), ">=": (3, operator.ge),
+    "+": (4, operator.add), "-": (4, operator.sub),
+    "*": (5, operator.mul), "/": (5, operator.truediv), "%": (5, math.fmod),
+}  # fmt: skip
 
 _NEW = {
     "newp": ("Point",),
@@ -209,12 +209,12 @@ class Reader:
         second = self._ternary()
         return first if condition else second
 
-    def _binary(self, level: int) -> float:
-        if level == len(_BINARY):
-            return self._unary()
-        left = self._binary(level + 1)
-        while sign := self.accept(*_BINARY[level]):
-            left = float(_BINARY[level][sign.text](left, self._binary(level + 1)))
+    def _binary(self, weakest: int) -> float:
+        """An expression of signs that bind at least as strongly as those of a level."""
+        left = self._unary()
+        while self.has(*_BINARY) and _BINARY[self.token.text][0] >= weakest:
+            level, operation = _BINARY[self.next().text]
+            left = float(operation(left, self._binary(level + 1)))
         return left
 
     def _unary(self) -> float:

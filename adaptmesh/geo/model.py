@@ -25,6 +25,7 @@ from ..domain import Domain
 from ..drawings.drawing import JOINED
 from ..errors import DomainError, FormatError
 from ..io.files import read_bytes
+from ..runs import places_of
 from .script import CURVES, Definition, Script, script_of
 
 Floats = NDArray[np.float64]
@@ -32,7 +33,7 @@ Floats = NDArray[np.float64]
 SAME_RADIUS = 1e-6
 """The ends of a Circle have the same distance from its centre, to this share."""
 
-_SAMPLES = 33  # of each curve, for polygons in which seeds are found
+_SAMPLES = np.linspace(0, 1, 33)  # on each curve, for polygons in which seeds are found
 
 
 def read_geo(path: str | os.PathLike[str]) -> Domain:
@@ -174,16 +175,16 @@ class _Model:
         curves = [curve for k in used for curve in self.curves[k]]
         if not curves:
             raise DomainError("it has no curves: there is nothing to mesh")
-        owner = [k for k in used for _ in self.curves[k]]
+        owner = np.array([k for k in used for _ in self.curves[k]])
         names = {
-            name: [i for i, k in enumerate(owner) if k in set(numbers)]
+            name: np.flatnonzero(np.isin(owner, numbers))
             for name, numbers in self.curve_names.items()
         }
         holes, regions = self._seeds() if self.surfaces else ("nesting", {})
         isolated = [self.points[k] for k in self.inner_points if k in self.points]
         return Domain.from_curves(
             curves,
-            names={name: numbers for name, numbers in names.items() if numbers},
+            names={name: numbers for name, numbers in names.items() if len(numbers)},
             holes=holes,
             regions=regions,
             tags=self.curve_tags,
@@ -229,21 +230,31 @@ class _Model:
         """A curve loop as a polygon; its curves may be listed in any order and direction."""
         import shapely
 
-        t = np.linspace(0, 1, _SAMPLES)
-        lines = [curve.point(t) for k in self.loops[loop] for curve in self.curves[k]]
-        tolerance = JOINED * float(np.ptp(np.concatenate(lines), axis=0).max())
-        ring = [lines.pop(0)]
-        while lines:
-            here = ring[-1][-1]
-            gaps = [np.hypot(*(line[end] - here)) for line in lines for end in (0, -1)]
-            nearest = int(np.argmin(gaps))
-            if gaps[nearest] > tolerance:
-                raise _not_closed(surface, loop, here)
-            line = lines.pop(nearest // 2)
-            ring.append(line[::-1] if nearest % 2 else line)
-        if np.hypot(*(ring[-1][-1] - ring[0][0])) > tolerance:
-            raise _not_closed(surface, loop, ring[-1][-1])
-        return shapely.Polygon(np.concatenate(ring))
+        curves = [curve for k in self.loops[loop] for curve in self.curves[k]]
+        lines = [np.array([c.start, c.end]) if c.is_straight else c.point(_SAMPLES) for c in curves]
+        walk, stop = _walk(lines)
+        if stop is not None:
+            raise _not_closed(surface, loop, stop)
+        return shapely.Polygon(np.concatenate([lines[k][:: -1 if back else 1] for k, back in walk]))
+
+
+def _walk(lines: Sequence[Floats]) -> tuple[list[tuple[int, bool]], Floats | None]:
+    """Lines one after the other, each with whether backwards, and where they are not closed."""
+    ends = np.array([line[end] for line in lines for end in (0, -1)])
+    node = places_of(ends, JOINED * float(np.ptp(np.concatenate(lines), axis=0).max()))
+    at: dict[int, list[int]] = {}
+    for end, place in enumerate(node.tolist()):
+        at.setdefault(place, []).append(end)
+    walk: list[tuple[int, bool]] = []
+    is_walked = [False] * len(lines)
+    onward: int | None = 0  # 2k and 2k + 1 are the ends of line k
+    while onward is not None:
+        last = onward ^ 1
+        walk.append((onward // 2, onward % 2 == 1))
+        is_walked[onward // 2] = True
+        onward = next((e for e in at[node[last]] if not is_walked[e // 2]), None)
+    is_closed = node[last] == node[0] and all(is_walked)
+    return walk, None if is_closed else ends[last]
 
 
 def _not_closed(surface: int, loop: int, place: Floats) -> FormatError:
