@@ -93,7 +93,7 @@ class Iteration:
         On this mesh, by field: the estimate of its interpolation error, or what solve gave.
     unit_fraction : float
         Of the edges, those with a length in [1/√2, √2] in the metric that the mesh was made for
-        (interpolated logarithmically, by quadrature); not a number for the mesh given.
+        (carried by the mesh before, by Simpson's rule); not a number for the mesh given.
     seconds : Seconds
     """
 

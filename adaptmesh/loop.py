@@ -354,5 +354,5 @@ def _resumed(
 
 
 def _unit_fraction(mesh: Mesh, field: Background) -> float:
-    lengths = nodal_lengths(mesh.points, mesh.unique_edges, field)
+    lengths = nodal_lengths(mesh.points, mesh.unique_edges, field, "simpson")
     return float(np.mean((lengths >= UNIT[0]) & (lengths <= UNIT[1])))

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from metrics import Curvature, Limits, metric_from_hessians, normalised
+from metrics import Curvature, Limits, normalised
 from metrics.normalise import check_norm
+from metrics.solution import optimal_tensors
 
 from .errors import MetricError
 from .mesh import Mesh
@@ -119,7 +120,7 @@ class Steering:
                 "neither target_vertices nor error is given, and solve returned no metric: "
                 "there is nothing that says how fine the mesh is to be"
             )
-        background = metric_from_hessians(
+        metric = optimal_tensors(
             points,
             triangles,
             [c.absolute for c in curvatures.values()],
@@ -129,7 +130,7 @@ class Steering:
             limits=self.limits,
             combine=self.combine,
         )
-        return background.tensors, errors
+        return metric, errors
 
     def _steering_fields(self, mesh: Mesh, solved: Solved) -> dict[str, Array]:
         """Real fields at the vertices that are not the same everywhere, (n,) or (n, k)."""

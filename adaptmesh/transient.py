@@ -25,8 +25,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from metrics import Background, Curvature, Limits, absolute, combined, metric_from_hessians
+from metrics import Background, Curvature, Limits, absolute, combined
 from metrics.nodal import predicted_vertices
+from metrics.solution import optimal_tensors
 
 from .adapt import adapt
 from .errors import AdaptmeshError
@@ -368,7 +369,7 @@ class _Steering:
         ]
         total = self.target * len(meshes)
         for _ in range(TRIALS):
-            whole = metric_from_hessians(
+            whole = optimal_tensors(
                 points,
                 triangles,
                 stacked,
@@ -376,7 +377,7 @@ class _Steering:
                 p=self.p,
                 limits=self.limits,
                 combine=self.combine,
-            ).tensors
+            )
             parts = [whole[a:b] for a, b in itertools.pairwise(n_of)]
             counts = [
                 predicted_vertices(m.points, m.triangles, part)

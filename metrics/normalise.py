@@ -24,6 +24,7 @@ __all__ = [
 
 _PRECISION = 5e-4  # of the logarithm of the amount
 _NARROW = 1e-9  # an interval for the logarithm of the factor in which there is no more to find
+_LEAST_SLOPE = 0.1  # of the excess over the logarithm, for a secant to be trusted
 _FAR = 200.0  # logarithm of a factor beyond any use
 
 
@@ -234,11 +235,11 @@ def scaled_to(
     """The metric times the factor with which, after the limits, it meets the goal.
 
     The root of the excess over the logarithm of the factor, which is continuous and grows, nearly
-    as the logarithm itself: from the factor that would do without limits, in growing steps until
-    the excess changes its sign, then by the rule of false position (Illinois).
+    as the logarithm itself: from the factor that does without limits, by secants in growing steps
+    until the excess changes its sign, then by the rule of false position (Illinois).
     """
     coarsest, finest = _useful_factors(metric, limits)
-    x = float(np.clip(-goal.excess(metric), coarsest, finest))
+    x = float(np.clip(_unlimited_factor(goal, metric), coarsest, finest))
     ends: dict[bool, tuple[float, float]] = {}  # where it is too fine, and where too coarse
     last: bool | None = None
     stretch = 1.0
@@ -248,6 +249,7 @@ def scaled_to(
         if abs(here) <= _PRECISION:
             return met
         side = here > 0
+        before = ends.get(side)
         if len(ends) == 2 and side == last:
             far, excess = ends[not side]
             ends[not side] = far, excess / 2
@@ -258,12 +260,25 @@ def scaled_to(
                 return met
             x = (a * below - b * above) / (below - above)
             continue
-        further = float(np.clip(x - stretch * here, coarsest, finest))
+        slope = 1.0
+        if before is not None:
+            slope = float(np.clip((here - before[1]) / (x - before[0]), _LEAST_SLOPE, 1))
+        further = float(np.clip(x - stretch * here / slope, coarsest, finest))
         if further == x:
             if side and not goal.grows:
                 return met
             raise MetricError(_impossible(goal, goal.amount(met), side, limits))
-        x, stretch = further, 2 * stretch
+        x, stretch = further, stretch if before is None else 2 * stretch
+
+
+def _unlimited_factor(goal: Goal, metric: Floats) -> float:
+    """The logarithm of the factor with which the goal is nearly met without limits.
+
+    An amount is a sum of powers of the factor, of which the first step finds the order of magnitude
+    and the second corrects it where another power leads there.
+    """
+    first = -goal.excess(metric)
+    return first - goal.excess(np.exp(first) * metric)
 
 
 def _useful_factors(metric: Floats, limits: Limits) -> tuple[float, float]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import tensor
-from .arrays import Floats, as_numbers, as_points, as_triangles
+from .arrays import Floats, Ints, as_numbers, as_points, as_triangles
 from .background import Background
 from .curvature import Curvature
 from .errors import MetricError
@@ -150,39 +150,66 @@ def metric_from_hessians(
         If no target is given or the limits make it impossible; and if a Hessian is not positive
         definite.
     """
-    check_norm(p)
     where = as_points(points)
     t = as_triangles(triangles, len(where))
+    tensors = optimal_tensors(
+        where,
+        t,
+        hessians,
+        target_vertices=target_vertices,
+        complexity=complexity,
+        error=error,
+        p=p,
+        limits=limits,
+        combine=combine,
+    )
+    return Background(where, t, tensors)
+
+
+def optimal_tensors(
+    points: Floats,
+    triangles: Ints,
+    hessians: Sequence[ArrayLike],
+    *,
+    target_vertices: float | None = None,
+    complexity: float | None = None,
+    error: ArrayLike | None = None,
+    p: float = 2,
+    limits: Limits | None = None,
+    combine: str = "intersection",
+) -> Floats:
+    """What `metric_from_hessians` carries at the vertices, packed (n, 3)."""
+    check_norm(p)
     limits = limits or Limits()
     if not len(hessians):
         raise MetricError("no Hessians: at least one field must ask for sizes")
     curvatures = [
         tensor.limit(
-            tensor.pack(h, points=where, what="the absolute Hessian"),
+            tensor.pack(h, points=points, what="the absolute Hessian"),
             max_anisotropy=limits.max_anisotropy,
         )
         for h in hessians
     ]
     shapes = [lp_metric(h, p) for h in curvatures]
     if error is None:
-        goal = count_goal(where, t, target_vertices, complexity)
-        amounts = [1 / nodal_complexity(where, t, m) for m in shapes]
+        goal = count_goal(points, triangles, target_vertices, complexity)
+        amounts = [1 / nodal_complexity(points, triangles, m) for m in shapes]
     else:
         wanted = _as_errors(error, len(curvatures))
 
         def shares(metrics: list[Floats]) -> list[float]:
             pairs = zip(metrics, curvatures, wanted, strict=True)
-            return [interpolation_error(where, t, m, h, p) / e for m, h, e in pairs]
+            return [interpolation_error(points, triangles, m, h, p) / e for m, h, e in pairs]
 
         amounts = shares(shapes)
         if target_vertices is not None or complexity is not None:
-            goal = count_goal(where, t, target_vertices, complexity)
+            goal = count_goal(points, triangles, target_vertices, complexity)
         else:
             goal = Goal(
                 lambda m: max(shares([m] * len(curvatures))), 1.0, "share of the error", False
             )
     together = combined([k * m for k, m in zip(amounts, shapes, strict=True)], combine)
-    return Background(where, t, scaled_to(goal, together, where, t, limits))
+    return scaled_to(goal, together, points, triangles, limits)
 
 
 def _as_fields(values: ArrayLike, count: int) -> list[Floats]:
