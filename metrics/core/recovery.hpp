@@ -182,14 +182,18 @@ class QuadraticFit {
         if (!(l11_ > 0 && l22_ > 0)) return false;
 
         rows_.resize(m * COLUMNS);
-        std::fill(length_, length_ + COEFFICIENTS, 0.0);
+        const double per_l11 = 1 / l11_, per_l22 = 1 / l22_;
+        double* row = rows_.data();
+        for (const Index w : stencil_) {
+            const double s = (points_[2 * w] - x0) * per_l11;
+            const double t = (points_[2 * w + 1] - y0 - l21_ * s) * per_l22;
+            row[0] = 1, row[1] = s, row[2] = t, row[3] = s * s / 2, row[4] = s * t;
+            row[5] = t * t / 2, row[6] = values_[w] - u0, row[7] = 0;
+            row += COLUMNS;
+        }
+        std::fill(length_, length_ + COLUMNS, 0.0);
         for (std::size_t i = 0; i < m; ++i) {
-            const Index w = stencil_[i];
-            const double s = (points_[2 * w] - x0) / l11_;
-            const double t = (points_[2 * w + 1] - y0 - l21_ * s) / l22_;
-            const double row[COLUMNS] = {1, s, t, s * s / 2, s * t, t * t / 2, values_[w] - u0};
-            std::copy(row, row + COLUMNS, &rows_[i * COLUMNS]);
-            for (std::size_t j = 0; j < COEFFICIENTS; ++j) length_[j] += row[j] * row[j];
+            for (std::size_t j = 0; j < COLUMNS; ++j) length_[j] += entry(i, j) * entry(i, j);
         }
         for (double& length : length_) length = std::sqrt(length);
         return true;
@@ -214,20 +218,26 @@ class QuadraticFit {
 
     // Householder's reflection of column j onto its first entry below the triangle, applied to the
     // columns after it. Returns the magnitude of that entry.
+    //
+    // With x the column, t the entry it becomes and v = x - t e_j, what is taken from a column y is
+    // v (v' y) / (v' x), and v' y = x' y - t y_j. Whole rows are worked on, which vectorises.
     double reflect(std::size_t j) {
         const std::size_t m = stencil_.size();
-        double norm = 0;
-        for (std::size_t i = j; i < m; ++i) norm += entry(i, j) * entry(i, j);
-        norm = std::sqrt(norm);
-        if (norm == 0) return 0;
-        const double pivot = entry(j, j), target = pivot > 0 ? -norm : norm;
-        entry(j, j) = pivot - target;
-        const double scale = 1 / (target * entry(j, j));  // -2 / |v|^2
-        for (std::size_t k = j + 1; k < COLUMNS; ++k) {
-            double product = 0;
-            for (std::size_t i = j; i < m; ++i) product += entry(i, j) * entry(i, k);
-            product *= scale;
-            for (std::size_t i = j; i < m; ++i) entry(i, k) += product * entry(i, j);
+        double product[COLUMNS] = {};  // of the column with each
+        for (std::size_t i = j; i < m; ++i) {
+            const double *y = &rows_[i * COLUMNS], x = y[j];
+            for (std::size_t k = 0; k < COLUMNS; ++k) product[k] += x * y[k];
+        }
+        if (product[j] == 0) return 0;
+        const double norm = std::sqrt(product[j]), target = entry(j, j) > 0 ? -norm : norm;
+        const double scale = 1 / (product[j] - target * entry(j, j));
+        for (std::size_t k = 0; k < COLUMNS; ++k) {
+            product[k] = k <= j ? 0 : (product[k] - target * entry(j, k)) * scale;
+        }
+        entry(j, j) -= target;
+        for (std::size_t i = j; i < m; ++i) {
+            double *y = &rows_[i * COLUMNS], v = y[j];
+            for (std::size_t k = 0; k < COLUMNS; ++k) y[k] -= product[k] * v;
         }
         entry(j, j) = target;
         return norm;
@@ -235,7 +245,8 @@ class QuadraticFit {
 
     double& entry(std::size_t i, std::size_t j) { return rows_[i * COLUMNS + j]; }
 
-    static constexpr std::size_t COLUMNS = COEFFICIENTS + 1;  // the last is the right-hand side
+    // After the coefficients the right-hand side, and one that makes their number even.
+    static constexpr std::size_t COLUMNS = COEFFICIENTS + 2;
 
     const double* points_;
     const double* values_;
@@ -243,8 +254,8 @@ class QuadraticFit {
     std::vector<Index> seen_;  // the last vertex whose stencil had this one
     std::vector<Index> stencil_;
     std::vector<double> rows_;
-    double length_[COEFFICIENTS];  // of the columns
-    double l11_, l21_, l22_;       // of the frame
+    double length_[COLUMNS];  // of the columns
+    double l11_, l21_, l22_;  // of the frame
 };
 
 }  // namespace metrics
