@@ -2,12 +2,12 @@
 // there.
 //
 // A look-up walks from a triangle that the caller remembers to the one that has the point, each
-// step across the edge that the point lies furthest behind; without a hint, from a triangle that a
-// grid has for the place. In a mesh with holes and corners a walk
-// may end at the border with the point still beyond; and on a mesh that is not Delaunay it may go
-// in circles. So a walk is only ever an attempt, which nearly always succeeds: when it meets the
-// border or has gone MAX_STEPS steps, a tree of boxes gives the definite answer, which triangle has
-// the point, or, for a point outside, which border edge is nearest.
+// step across the edge that the point lies furthest behind; without a hint, from a triangle that
+// nested grids have for the place. In a mesh with holes and corners a walk may end at the border
+// with the point still beyond; and on a mesh that is not Delaunay it may go in circles. So a walk
+// is only ever an attempt, which nearly always succeeds: when it meets the border or has gone
+// MAX_STEPS steps, a tree of boxes gives the definite answer, which triangle has the point, or, for
+// a point outside, which border edge is nearest.
 //
 // Constant after construction: any number of threads may look up at once.
 #pragma once
@@ -54,8 +54,7 @@ class Locator {
             triangles_.push_back({{v[0], v[1], v[2]}, {NO_TRIANGLE, NO_TRIANGLE, NO_TRIANGLE}});
         }
         find_neighbours(triangles);
-        plant_trees();
-        sow_seeds();
+        prepare_searches();
     }
 
     Index triangle_count() const { return Index(triangles_.size()); }
@@ -214,7 +213,7 @@ class Locator {
         triangles_[u].n[j] = t;
     }
 
-    void plant_trees() {
+    void prepare_searches() {
         std::vector<Box> boxes, border_boxes;
         boxes.reserve(triangles_.size());
         for (Index t = 0; t < triangle_count(); ++t) {
@@ -231,16 +230,7 @@ class Locator {
         }
         triangle_tree_ = BoxTree(boxes);
         border_tree_ = BoxTree(border_boxes);
-    }
-
-    void sow_seeds() {
-        seeds_ = SeedGrid(triangle_tree_.bounds(), triangles_.size());
-        for (Index t = 0; t < triangle_count(); ++t) {
-            const Index* v = triangles_[t].v;
-            const Vertex &p = vertices_[v[0]], &q = vertices_[v[1]], &r = vertices_[v[2]];
-            seeds_.put((p.x + q.x + r.x) / 3, (p.y + q.y + r.y) / 3, t);
-        }
-        seeds_.fill_gaps();
+        seeds_ = SeedGrid(boxes);
     }
 
     void include(Box& box, Index t, int corner) const {

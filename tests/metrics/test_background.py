@@ -67,6 +67,15 @@ def random_points_in(points, triangles, n, seed=0):
     return np.einsum("ki,kid->kd", weights, points[triangles[owners]]), owners
 
 
+def layered(xs, ys):
+    """The mesh of a grid of lines, each rectangle cut in two: (points, triangles)."""
+    x, y = np.meshgrid(xs, ys)
+    i = np.arange(x.size).reshape(x.shape)
+    a, b, c, d = (v.ravel() for v in (i[:-1, :-1], i[:-1, 1:], i[1:, 1:], i[1:, :-1]))
+    triangles = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+    return np.stack([x.ravel(), y.ravel()], 1), triangles.astype(np.int32)
+
+
 def barycentric(points, triangles, x, owners):
     p, q, r = (points[triangles[owners, k]] for k in range(3))
     parts = [cross(q - x, r - x), cross(r - x, p - x), cross(p - x, q - x)]
@@ -305,3 +314,19 @@ def test_other_arguments_are_refused():
             field.evaluate(SQUARE, hints)
     with pytest.raises(MetricError, match='"clamp" or "error"'):
         Background(SQUARE, TWO, [0.1] * 4, outside="ignore")
+
+
+@pytest.mark.parametrize(
+    ("xs", "ys"),
+    [
+        (0.5 ** np.arange(300)[::-1], [0.0, 1.0]),  # each column half as wide as the next
+        (0.5 ** np.arange(40)[::-1], 0.7 ** np.arange(90)[::-1]),
+        (np.linspace(0, 1, 4), np.concatenate([np.linspace(0, 1e-9, 300), [1.0]])),
+    ],
+    ids=["geometric", "corner", "layer"],
+)
+def test_triangles_of_all_sizes_are_found(xs, ys):
+    points, triangles = layered(xs, ys)
+    field = Background(points, triangles, np.ones(len(points)))
+    x = points[triangles].mean(axis=1)
+    assert np.array_equal(field.evaluate(x)[1], np.arange(len(triangles)))
