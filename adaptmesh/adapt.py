@@ -45,9 +45,10 @@ def adapt(
         False: the domain is meshed again, and no vertex but its corners is kept. True: the mesh is
         edited where it does not fit the metric, around edges that are not unit, and all else stays
         as it is: for time steps, where the metric changes little or in few places. `Mesh.kept` of
-        the new mesh says which vertices were kept. The domain is meshed again all the same if most
-        of the vertices would have to go, if it has curves or periodic boundaries, or if the
-        constrained edges of the mesh are not those of the domain.
+        the new mesh says which vertices were kept. New vertices of the boundary lie on
+        the curves of the domain, and periodic boundaries stay alike. The domain is meshed again all
+        the same if most of the vertices would have to go, or if the constrained edges of the mesh
+        are not along the lines of the domain.
     frozen : sequence of str, optional
         Names of boundaries and lines whose edges stay as the mesh has them, to fit a neighbour;
         those that are periodic with them stay, too.

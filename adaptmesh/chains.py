@@ -1,54 +1,42 @@
-"""The constrained edges of a mesh, in rows along the pieces of its domain; cut anew where off unit.
+"""The constrained edges of a mesh, in rows along the lines of its domain.
 
 ::
 
-    A---o---o-----o--o---o---B      a piece of the domain from A to B, and a mesh's row along it
-            [-----------]           a stretch with an edge that is not unit, and its neighbours,
-    A---o---o---n---n---o---B       cut into equal parts
+    A---o---o-----o--o---o---B      a line of the domain from A to B, and a mesh's row along it
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from metrics import ControlSpace
-
-from . import _core
-from .domain import Domain
-from .edge_lengths import measure_edges, sampler_of, straight_lengths
 from .invariants.subject import edge_keys
+from .lines import Lines
 from .mesh import Mesh
-from .periodic import frozen_pieces
+from .on_runs import places_on_runs, tolerance_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
-T = TypeVar("T", bound=np.generic)
-
-UNIT = (float(np.sqrt(0.5)) * (1 - 1e-9), float(np.sqrt(2)) * (1 + 1e-9))
-
-# A stretch that cannot be cut into parts this near to unit takes in a neighbour, so many times.
-GOOD = (0.8, 1.25)
-MOST_NEIGHBOURS = 4
+Index = NDArray[np.integer]
 
 
 @dataclass(frozen=True)
 class Chains:
-    """Rows of vertices along the pieces of a domain.
+    """Rows of vertices along lines.
 
     Attributes
     ----------
     vertices : (c,) array of int32
-        All rows, one after the other, each from the first end of its piece to the second.
+        All rows, one after the other, each from the first end of its line to the second.
     places : (c,) array of float
-        How far along its piece each is, from 0 to 1.
-    first : (p + 1,) array of int32
-        Where the row of each piece begins.
+        Where along its line each is; see `Lines`.
+    first : (l + 1,) array of int32
+        Where the row of each line begins.
     """
 
     vertices: Ints
@@ -56,75 +44,69 @@ class Chains:
     first: Ints
 
     @property
-    def edge_starts(self) -> Ints:
-        """The number in `vertices` of the first end of every edge of the rows."""
-        is_start = np.ones(len(self.vertices), bool)
-        is_start[self.first[1:] - 1] = False
-        return np.flatnonzero(is_start).astype(np.int32)
+    def lines(self) -> Ints:
+        """The line of each vertex of the rows, (c,)."""
+        return np.repeat(np.arange(len(self.first) - 1, dtype=np.int32), np.diff(self.first))
 
     @property
     def edges(self) -> Ints:
         """All edges of the rows, (e, 2)."""
-        at = self.edge_starts
+        at = self._starts
         return np.stack([self.vertices[at], self.vertices[at + 1]], axis=1)
 
     @property
-    def edge_pieces(self) -> Ints:
-        """The piece that each edge lies on, (e,)."""
-        return np.repeat(np.arange(len(self.first) - 1, dtype=np.int32), np.diff(self.first) - 1)
+    def edge_lines(self) -> Ints:
+        """The line that each edge lies on, (e,)."""
+        return self.lines[self._starts]
+
+    @property
+    def _starts(self) -> Index:
+        """The number in `vertices` of the first end of every edge of the rows."""
+        is_start = np.ones(len(self.vertices), bool)
+        is_start[self.first[1:] - 1] = False
+        return np.flatnonzero(is_start)
 
 
-def find_chains(mesh: Mesh, domain: Domain) -> Chains | None:
-    """The rows of a mesh along the pieces of its domain.
+class Inner(NamedTuple):
+    """The vertices of constrained edges that are no corners.
 
-    None if its constrained edges are not along these pieces, or if there is more to a row than its
-    own length: on curves, and where two boundaries correspond.
+    Attributes
+    ----------
+    vertices, rows : (k,) arrays of int
+        Their numbers in the mesh, and the row of each.
+    points : (k, 2) array
+    run, u, which : (p,) arrays
+        Places of runs that they lie on: the run, its parameter, and which of them it is.
     """
-    if domain.curved.runs or domain.periodic:
-        return None
-    corner = vertices_at(mesh, domain.points)
+
+    vertices: Index
+    rows: Index
+    points: Floats
+    run: Index
+    u: Floats
+    which: Index
+
+
+def find_chains(mesh: Mesh, lines: Lines) -> Chains | None:
+    """The rows of a mesh along lines; None if its constrained edges are not along these."""
+    corner = vertices_at(mesh, lines.corners)
     if (corner < 0).any() or not len(mesh.edges) or _regions_leak(mesh):
         return None
     number = np.full(len(mesh.points), -1)
     number[corner] = np.arange(len(corner))
-    ends = number[mesh.edges]
+    row = _rows(mesh.edges, number)
 
-    # Edges that share a vertex other than the points of the domain belong to one row.
-    n, e = len(mesh.points), len(mesh.edges)
-    edge, side = np.nonzero(ends < 0)
-    shared = mesh.edges[edge, side]
-    graph = coo_array((np.ones(len(edge)), (edge, e + shared)), shape=(e + n, e + n))
-    row = connected_components(graph, directed=False)[1][:e]
-    edge, side = np.nonzero(ends >= 0)
+    edge, side = np.nonzero(number[mesh.edges] >= 0)
     order = np.argsort(row[edge], kind="stable")
-    rows, corners = row[edge][order], ends[edge, side][order]
-    if len(rows) != 2 * len(domain.pieces) or (rows[::2] != rows[1::2]).any():
+    rows, corners = row[edge][order], number[mesh.edges[edge, side]][order]
+    if not np.array_equal(rows, np.repeat(np.arange(len(lines)), 2)):
+        return None  # there are too many rows, or some without two ends
+    inner = _inner(mesh, number, row, lines)
+    line = _lines_of_rows(corners.reshape(-1, 2), inner, lines)
+    places = None if line is None else _places(inner, line[inner.rows], lines)
+    if line is None or places is None:
         return None
-    piece_keys = _keys(domain.pieces, len(corner))
-    keys = edge_keys(corners[::2], corners[1::2], len(corner))
-    sorter = np.argsort(piece_keys)
-    found = np.minimum(np.searchsorted(piece_keys, keys, sorter=sorter), len(sorter) - 1)
-    piece = sorter[found]
-    if (piece_keys[piece] != keys).any() or len(np.unique(piece)) != len(domain.pieces):
-        return None
-    piece_of_row = np.full(row.max() + 1, -1)
-    piece_of_row[rows[::2]] = piece
-    return _in_order(mesh, domain, corner, piece_of_row[row])
-
-
-def _in_order(mesh: Mesh, domain: Domain, corner: Ints, pieces: Ints) -> Chains | None:
-    """Rows from the piece of each constrained edge: vertices sorted by their place along it."""
-    pairs = np.unique(np.stack([np.repeat(pieces, 2), mesh.edges.ravel()], axis=1), axis=0)
-    piece, vertex = pairs.T
-    start, end = domain.points[domain.pieces[piece, 0]], domain.points[domain.pieces[piece, 1]]
-    along = end - start
-    places = np.sum((mesh.points[vertex] - start) * along, axis=1) / np.sum(along**2, axis=1)
-    order = np.lexsort([places, piece])
-    first = np.searchsorted(piece[order], np.arange(len(domain.pieces) + 1))
-    chains = Chains(vertex[order].astype(np.int32), places[order], first.astype(np.int32))
-    n = len(mesh.points)
-    ours, theirs = _keys(chains.edges, n), _keys(mesh.edges, n)
-    return chains if np.array_equal(np.sort(ours), np.sort(theirs)) else None
+    return _in_order(mesh, corner, inner.vertices, line[inner.rows], places, lines)
 
 
 def vertices_at(mesh: Mesh, points: Floats) -> Ints:
@@ -150,103 +132,96 @@ def _regions_leak(mesh: Mesh) -> bool:
     return not np.isin(keys[1:][differ], _keys(mesh.edges, len(mesh.points))).all()
 
 
-def recut(mesher: _core.Mesher, chains: Chains, domain: Domain, field: ControlSpace) -> Chains:
-    """Cut the rows anew where their edges are not unit; what cannot be cut stays as it is."""
-    points = mesher.points()[chains.vertices]
-    at = chains.edge_starts
-    lengths = straight_lengths(points, np.stack([at, at + 1], axis=1), field)
-    stretches = _stretches(chains, lengths, frozen_pieces(domain))
-    if not len(stretches):
-        return chains
-    begin, end = stretches.T
-    sampler = sampler_of(points, field(points), stretches)
-    measure_edges(sampler, field)
-    cuts, owner = sampler.cut()
-    vector = (points[end] - points[begin])[owner]
-    share = np.sum((cuts - points[begin[owner]]) * vector, axis=1) / np.sum(vector**2, axis=1)
-    low, high = chains.places[begin[owner]], chains.places[end[owner]]
-
-    piece = np.searchsorted(chains.first, begin, side="right") - 1
-    inside = np.concatenate([np.arange(b, e + 1) for b, e in stretches])
-    vertices, places, first = mesher.recut(
-        _offsets(end - begin + 1),
-        chains.vertices[inside],
-        chains.places[inside],
-        _offsets(np.bincount(owner, minlength=len(stretches))),
-        cuts,
-        field(cuts),
-        low + share * (high - low),
-        domain.piece_segments[piece],
-    )
-    grown = np.bincount(piece, np.diff(first) - (end - begin + 1), len(chains.first) - 1)
-    return Chains(
-        _replaced(chains.vertices, stretches, np.split(vertices, first[1:-1])),
-        _replaced(chains.places, stretches, np.split(places, first[1:-1])),
-        (chains.first + _offsets(grown)).astype(np.int32),
-    )
+def _rows(edges: Ints, number: Index) -> Index:
+    """The row of each edge, (e,): edges that share a vertex that is no corner are in one."""
+    n, e = len(number), len(edges)
+    edge, side = np.nonzero(number[edges] < 0)
+    shared = edges[edge, side]
+    graph = coo_array((np.ones(len(edge)), (edge, e + shared)), shape=(e + n, e + n))
+    label = connected_components(graph, directed=False)[1][:e]
+    rows: Index = np.unique(label, return_inverse=True)[1].ravel()
+    return rows
 
 
-def _stretches(chains: Chains, lengths: Floats, is_frozen: NDArray[np.bool_]) -> Ints:
-    """What to cut anew, (s, 2): numbers in `vertices` of the first and the last vertex of each."""
-    first_edge = chains.first - np.arange(len(chains.first))
-    pieces = chains.edge_pieces
-    out, done = [], 0
-    for edge in np.flatnonzero((lengths < UNIT[0]) | (lengths > UNIT[1])).tolist():
-        if edge < done:
-            continue
-        piece = int(pieces[edge])
-        if is_frozen[piece]:
-            continue
-        least, most = max(int(first_edge[piece]), done), int(first_edge[piece + 1])
-        a, b = _stretch_around(edge, least, most, lengths)
-        done = b
-        parts, part = unit_parts(lengths[a:b].sum())
-        if parts != b - a or np.ptp(lengths[a:b]) > 0.02 * part:
-            out.append((a + piece, b + piece))
-    return np.array(out, np.int32).reshape(-1, 2)
+def _inner(mesh: Mesh, number: Index, row: Index, lines: Lines) -> Inner:
+    edge, side = np.nonzero(number[mesh.edges] < 0)
+    vertices, first = np.unique(mesh.edges[edge, side], return_index=True)
+    points = mesh.points[vertices]
+    none = np.empty(0, np.intp)
+    on_runs: tuple[Index, Floats, Index] = none, np.empty(0), none
+    if lines.domain.curved.runs:
+        on_runs = places_on_runs(lines.domain, points, tolerance_of(lines.domain))
+    return Inner(vertices, row[edge[first]], points, *on_runs)
 
 
-def _stretch_around(edge: int, least: int, most: int, lengths: Floats) -> tuple[int, int]:
-    """Edges [a, b) within [least, most) around one that is not unit, that cut into good parts."""
+def _lines_of_rows(corners: Index, inner: Inner, lines: Lines) -> Index | None:
+    """The line of each row, (r,), from the corners at its ends (r, 2).
 
-    def badness(a: int, b: int) -> float:
-        _, part = unit_parts(lengths[a:b].sum())
-        return float(abs(np.log(part)))
-
-    a, b = edge, edge + 1
-    for _ in range(MOST_NEIGHBOURS):
-        while b < most and not UNIT[0] <= lengths[b] <= UNIT[1]:
-            b += 1
-        if GOOD[0] <= unit_parts(lengths[a:b].sum())[1] <= GOOD[1]:
-            break
-        wider = [(a - 1, b)] * (a > least) + [(a, b + 1)] * (b < most)
-        if not wider:
-            break
-        a, b = min(wider, key=lambda w: badness(*w))
-    return a, b
-
-
-def unit_parts(length: float) -> tuple[int, float]:
-    """How many parts bring a length nearest to unit, and how long they are then."""
-    parts = max(1, int(0.5 * (1 + np.sqrt(1 + 4 * (length * (1 - 1e-9)) ** 2))))
-    return parts, length / parts
-
-
-def _keys(edges: Ints, n_points: int) -> NDArray[np.int64]:
-    return edge_keys(edges[:, 0], edges[:, 1], n_points)
-
-
-def _offsets(counts: NDArray[Any]) -> Ints:
-    return np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
-
-
-def _replaced(row: NDArray[T], stretches: Ints, by: list[NDArray[T]]) -> NDArray[T]:
-    """A row with each stretch [begin, end], sorted, replaced by another from and to the same.
-
-    One may begin where another ends: the last of each is left to what follows.
+    Several lines may join the same two corners, or begin and end at one; but no two straight ones.
     """
-    by = [part[:-1] for part in by]
-    cuts = [0, *stretches.ravel().tolist(), len(row)]
-    kept = [row[i:j] for i, j in zip(cuts[::2], cuts[1::2], strict=True)]
-    parts = [part for pair in zip(kept, by, strict=False) for part in pair]
-    return np.concatenate([*parts, kept[-1]])
+    keys, line_keys = _keys(corners, len(lines.corners)), _keys(lines.ends, len(lines.corners))
+    order, line_order = np.argsort(keys, kind="stable"), np.argsort(line_keys, kind="stable")
+    if not np.array_equal(keys[order], line_keys[line_order]):
+        return None
+    out = np.empty(len(keys), np.intp)
+    out[order] = line_order
+    _, first, count = np.unique(keys[order], return_index=True, return_counts=True)
+    for i, n in zip(first[count > 1].tolist(), count[count > 1].tolist(), strict=True):
+        chosen = _told_apart(order[i : i + n], line_order[i : i + n], inner, lines)
+        if chosen is None:
+            return None
+        out[order[i : i + n]] = chosen
+    return out
+
+
+def _told_apart(rows: Index, candidates: Index, inner: Inner, lines: Lines) -> list[int] | None:
+    """The line of each of some rows that end at the same corners.
+
+    It is the run that an inner vertex lies on, or else the straight line; a row without an inner
+    vertex gets what is left.
+    """
+    left = candidates.tolist()
+    out = []
+    for row in rows.tolist():
+        mine = np.flatnonzero(inner.rows == row)
+        on = (lines.n_straight + inner.run[inner.which == mine[0]]).tolist() if len(mine) else []
+        fitting = [k for k in left if k in on] or [k for k in left if k < lines.n_straight]
+        out.append(fitting[0] if len(mine) and fitting else -1)
+        left = [k for k in left if k != out[-1]]
+    if out.count(-1) != len(left) or len(left) > 1:
+        return None
+    return [k if k >= 0 else left[0] for k in out]
+
+
+def _places(inner: Inner, line: Index, lines: Lines) -> Floats | None:
+    """Where along its line each inner vertex is, (k,); None if one of them is not on it."""
+    out = np.full(len(line), np.nan)
+    straight = line < lines.n_straight
+    a, b = (lines.corners[lines.ends[line[straight], i]] for i in (0, 1))
+    along, off = b - a, inner.points[straight] - a
+    out[straight] = (off * along).sum(axis=1) / (along**2).sum(axis=1)
+    beside = np.abs(off[:, 0] * along[:, 1] - off[:, 1] * along[:, 0])
+    if (beside > tolerance_of(lines.domain) * np.hypot(*along.T)).any():
+        return None
+    right = line[inner.which] == lines.n_straight + inner.run
+    out[inner.which[right]] = inner.u[right]
+    return None if np.isnan(out).any() else out
+
+
+def _in_order(
+    mesh: Mesh, corner: Index, inner: Index, line: Index, places: Floats, lines: Lines
+) -> Chains | None:
+    """Rows of the corners at the ends of each line, and the inner vertices by their places."""
+    every = np.arange(len(lines))
+    line = np.concatenate([every, every, line])
+    vertex = np.concatenate([corner[lines.ends[:, 0]], corner[lines.ends[:, 1]], inner])
+    places = np.concatenate([np.zeros(len(lines)), lines.lengths, places])
+    order = np.lexsort([places, line])
+    first = np.searchsorted(line[order], np.arange(len(lines) + 1)).astype(np.int32)
+    chains = Chains(vertex[order].astype(np.int32), places[order], first)
+    ours, theirs = (np.sort(_keys(edges, len(mesh.points))) for edges in (chains.edges, mesh.edges))
+    return chains if np.array_equal(ours, theirs) else None
+
+
+def _keys(edges: Index, n_points: int) -> NDArray[np.int64]:
+    return edge_keys(edges[:, 0], edges[:, 1], n_points)

@@ -61,6 +61,11 @@ class Chords:
     u: Floats
     ends: Ints
 
+    def by_run(self, n: int) -> list[Floats]:
+        """The parameters at which each of n runs is cut, ascending, with both its ends."""
+        first = np.searchsorted(self.run, np.arange(1, n))
+        return [np.append(u[:, 0], u[-1, 1]) for u in np.split(self.u, first)]
+
 
 @dataclass(frozen=True)
 class Surroundings:

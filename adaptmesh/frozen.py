@@ -54,11 +54,11 @@ def _of_curves(domain: Domain, edges: dict[str, Floats], rest: NDArray[np.bool_]
     curved = domain.curved
     kept = np.unique(curved.segment_curves[rest])
     tag_of = dict(zip(curved.segment_curves.tolist(), domain.segment_tags.tolist(), strict=True))
-    curves: list[Curve] = [curved.curves[i] for i in kept]
-    tags = [tag_of[i] for i in kept.tolist()]
-    for name, ends in edges.items():
-        curves += [Line(a, b) for a, b in ends]
-        tags += [domain.names[name]] * len(ends)
+    # First what is frozen: where ends are joined, the first one says where.
+    curves: list[Curve] = [Line(a, b) for ends in edges.values() for a, b in ends]
+    curves += [curved.curves[i] for i in kept]
+    tags = [domain.names[name] for name, ends in edges.items() for _ in ends]
+    tags += [tag_of[i] for i in kept.tolist()]
     isolated = np.setdiff1d(np.flatnonzero(curved.is_vertex), domain.segments)
     return Domain.from_curves(
         curves,

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from metrics import ControlSpace
 
 from . import _core
-from .chains import Chains, find_chains, recut, vertices_at
+from .chains import Chains, find_chains, vertices_at
 from .domain import Domain
 from .errors import DomainError
 from .generate import (
@@ -39,8 +39,11 @@ from .generate import (
     place_along_edges,
     settle,
 )
+from .lines import Lines
 from .mesh import Mesh
 from .misfits import Fit, around_misfits
+from .recutting import had_better_be_anew, recut
+from .strands import Strands
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -78,13 +81,18 @@ def edited(
 ) -> Mesh | None:
     """The mesh, edited to fit a metric; None if a new one had better be made."""
     report("loading the mesh", 0.02)
-    chains = find_chains(mesh, domain)
+    lines = Lines.of(domain)
+    chains = find_chains(mesh, lines)
     if chains is None:
         return None
-    held = holders(mesh, domain, chains)
+    held = holders(mesh, lines, chains)
     mesher = load(mesh, domain, held, samples)
+    outline_fits = False
     for turn in range(options.turns):
-        chains = recut(mesher, chains, domain, samples)
+        if not outline_fits:
+            before = chains
+            chains = recut(mesher, before, lines, samples, budget.max_vertices)
+            outline_fits = chains is before
         measure_fresh_edges(mesher, samples, uncut_below=np.inf)
         removable = mesher.hold_all_but(around_misfits(mesher, samples, options.fit))
         if not removable:
@@ -94,7 +102,11 @@ def edited(
         mesher.remove_free(options.removal_rounds)
         mesher.swap()
         fill(mesher, samples, budget, within(report, turn / options.turns, 1 / options.turns))
-    mesher.set_constrained(chains.edges, domain.piece_segments[chains.edge_pieces])
+    if not Strands.of(chains, lines).may_stay(len(chains.vertices)).all():
+        return None  # periodic boundaries do not correspond
+    if had_better_be_anew(mesher, chains, lines, samples, budget.max_vertices):
+        return None
+    mesher.set_constrained(chains.edges, lines.segments[chains.edge_lines])
     mesher.compact()
     report("done", 1.0)
     return finished_mesh(domain, mesher, mesher.labels())
@@ -115,12 +127,11 @@ def within(report: Progress, start: float, share: float) -> Progress:
     return lambda stage, fraction: report(stage, start + share * fraction)
 
 
-def holders(mesh: Mesh, domain: Domain, chains: Chains) -> Ints:
-    """What holds each vertex, (n,): nothing, its segment, or that it is a point of the domain."""
+def holders(mesh: Mesh, lines: Lines, chains: Chains) -> Ints:
+    """What holds each vertex, (n,): nothing, its segment, or that it is a corner of the domain."""
     held = np.full(len(mesh.points), _core.FREE, np.int32)
-    pieces = np.repeat(np.arange(len(chains.first) - 1), np.diff(chains.first))
-    held[chains.vertices] = domain.piece_segments[pieces]
-    held[vertices_at(mesh, domain.points)] = _core.FIXED
+    held[chains.vertices] = lines.segments[chains.lines]
+    held[vertices_at(mesh, lines.corners)] = _core.FIXED
     return held
 
 

@@ -19,7 +19,7 @@ import metrics
 from metrics import ControlSpace
 
 from . import _core
-from .chains import UNIT
+from .stretches import UNIT
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]

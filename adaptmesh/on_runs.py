@@ -1,4 +1,4 @@
-"""Where on the runs of a domain points lie."""
+"""Whether points lie on the lines of a domain, and where on its runs."""
 
 from __future__ import annotations
 
@@ -21,8 +21,26 @@ REACH = 0.15
 NEWTON_STEPS = 8
 """Of the search for the nearest place of a curve; it converges quadratically from a chord of it."""
 
+LAST_STEP = 1e-8
+"""A step no longer than this leaves nothing but rounding to the next one."""
+
 AN_END = 1e-9
 """A parameter this near to that of an end is what rounding leaves of it."""
+
+
+TOLERANCE = 1e-12
+"""How far off a line of a domain its vertices may be, as a share of the diameter of the domain."""
+
+
+def tolerance_of(domain: Domain) -> float:
+    """How far off a line of the domain its vertices may be.
+
+    Points along slanted segments are rounded to the nearest coordinates: that is `TOLERANCE` times
+    the diameter of the domain plus a few units in the last place of the largest coordinate.
+    """
+    diameter = float(np.hypot(*np.ptp(domain.points, axis=0)))
+    largest = float(np.abs(domain.points).max())
+    return TOLERANCE * diameter + 8 * float(np.finfo(float).eps) * largest
 
 
 def places_on_runs(domain: Domain, points: Floats, tolerance: float) -> tuple[Index, Floats, Index]:
@@ -67,6 +85,8 @@ def _nearest(domain: Domain, run: Index, u: Floats, points: Floats) -> Floats:
     for _ in range(NEWTON_STEPS):
         d = derivatives_on(runs, run, out)
         step = ((points - points_on(runs, run, out)) * d).sum(axis=1) / (d**2).sum(axis=1)
-        out = np.clip(out + step, low, high)
+        out, before = np.clip(out + step, low, high), out
+        if (np.abs(out - before) <= LAST_STEP).all():
+            break
     nearest: Floats = out
     return nearest

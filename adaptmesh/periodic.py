@@ -246,7 +246,7 @@ def tied_chords(
     if not ties:
         return chords
     for _ in range(MOST_ROUNDS):
-        cuts = [_cuts_of(chords, r) for r in range(len(runs))]
+        cuts = chords.by_run(len(runs))
         for pair, i, j in ties:
             if len(cuts[i]) >= len(cuts[j]):
                 cuts[j] = _carried(runs[i], runs[j], cuts[i], pair.motion)
@@ -262,11 +262,6 @@ def tied_chords(
         f"{pair.first!r} and {pair.second!r} cannot be cut alike: what comes near one of them "
         "needs more chords there"
     )
-
-
-def _cuts_of(chords: Chords, run: int) -> Floats:
-    """The parameters of the ends of all chords of a run, ascending."""
-    return np.unique(chords.u[chords.run == run])
 
 
 def _carried(source: Run, target: Run, u: Floats, motion: Motion) -> Floats:

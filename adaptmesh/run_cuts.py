@@ -123,7 +123,8 @@ def unit_chords(
     """
     runs = domain.curved.runs
     part, u, vectors = parts.looks(domain)
-    least = np.maximum(1, np.ceil(_turns(part, vectors) / np.radians(TURN))).astype(int)
+    turn = np.bincount(part[1:], turns_between(part, vectors), minlength=len(parts.run))
+    least = np.maximum(1, np.ceil(turn / np.radians(TURN))).astype(int)
     measured = measure_runs([runs[r] for r in parts.run], part, u, field, most_points)
     cuts = measured.unit_cuts(least)
     for _ in range(RECUTS):
@@ -146,14 +147,12 @@ def _together(rest: Sequence[Floats], run: Index, cuts: Sequence[Floats]) -> lis
     return out
 
 
-def _turns(part: Index, vectors: Floats) -> Floats:
-    """By what angle each part turns, from the vectors of chords that are close to it."""
+def turns_between(part: Index, vectors: Floats) -> Floats:
+    """Angles between successive vectors (k, 2) of chords, (k - 1,), 0 from part to part."""
     before, after = vectors[:-1], vectors[1:]
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     turn = np.abs(np.arctan2(cross, (before * after).sum(axis=1)))
-    weights = np.where(np.diff(part) == 0, turn, 0.0)
-    out: Floats = np.bincount(part[1:], weights, minlength=int(part.max()) + 1).astype(np.float64)
-    return out
+    return np.where(np.diff(part) == 0, turn, 0.0)
 
 
 def _recut(

@@ -1,9 +1,6 @@
 """Is it a mesh of its domain?
 
-Points placed along a slanted segment are rounded to the nearest coordinates. So a point is on a
-segment if it is nearer than `TOLERANCE` times the diameter of the domain plus a few units in the
-last place of the largest coordinate. A point is on a curve if the nearest place of the curve is as
-near.
+A point is on a segment, or on a curve, if it is as near to it as `tolerance_of` allows.
 """
 
 from __future__ import annotations
@@ -13,13 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..on_runs import places_on_runs
+from ..on_runs import places_on_runs, tolerance_of
 from .subject import Bools, Finding, Floats, Index, Ints, Subject, edge_keys, finding
 
 if TYPE_CHECKING:
     from ..domain import Domain
-
-TOLERANCE = 1e-12
 
 QUADRATURE = 1e-9
 """Areas between curves and their chords are right to this share."""
@@ -47,15 +42,13 @@ class DomainSubject(Subject):
 
     @cached_property
     def tolerance(self) -> float:
-        """How far from a segment a point may be, scaled; see the top of this file."""
-        diameter = float(np.hypot(*np.ptp(self.corners, axis=0)))
-        largest = float(np.abs(self.corners).max())
-        return TOLERANCE * diameter + 8 * float(np.finfo(float).eps) * largest
+        """How far from a segment a point may be, scaled."""
+        return float(np.ldexp(self.true_tolerance, -self.exponent))
 
     @property
     def true_tolerance(self) -> float:
         """The tolerance in the units of the mesh."""
-        return float(np.ldexp(self.tolerance, self.exponent))
+        return tolerance_of(self.domain)
 
     @cached_property
     def vertices(self) -> Ints:

@@ -6,7 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import adaptmesh as am
-from adaptmesh.chains import find_chains, unit_parts
+from adaptmesh.chains import find_chains
+from adaptmesh.lines import Lines
+from adaptmesh.stretches import unit_parts
 
 
 def box():
@@ -269,11 +271,11 @@ def test_meshes_that_are_not_of_their_domain_are_made_anew():
     leaky = am.Mesh(
         mesh.points, mesh.triangles, np.arange(len(mesh.triangles)) % 2, mesh.edges, domain=box()
     )
-    assert find_chains(leaky, box()) is None
+    assert find_chains(leaky, Lines.of(box())) is None
     other = am.Domain.rectangle(0, 0, 2, 1)
-    assert find_chains(am.Mesh(mesh.points, mesh.triangles, domain=other), other) is None
+    assert find_chains(am.Mesh(mesh.points, mesh.triangles, domain=other), Lines.of(other)) is None
     short = am.Mesh(mesh.points, mesh.triangles, mesh.regions, mesh.edges[1:], domain=box())
-    assert find_chains(short, box()) is None
+    assert find_chains(short, Lines.of(box())) is None
     edited = am.adapt(short, 0.2, keep=True)
     assert am.validate(edited)
 
@@ -288,16 +290,6 @@ def test_frozen_edges_stay():
     assert edited.domain is mesh.domain
     assert np.mean(edited.kept >= 0) > 0.3
     check(edited)
-
-
-def test_curves_and_periodic_boundaries_are_meshed_again():
-    circle = am.Domain.from_curves([am.curves.Circle((0, 0), 1)])
-    edited = am.adapt(am.generate(circle, 0.2), 0.2, keep=True)
-    assert am.validate(edited)
-    assert edited.kept is not None
-    square = am.Domain.rectangle(0, 0, 1, 1).with_periodic("left", "right")
-    edited = am.adapt(am.generate(square, 0.2), 0.19, keep=True)
-    assert am.validate(edited)
 
 
 def test_a_broken_mesh():
