@@ -42,7 +42,7 @@ def adapt_loop(
     h_min: float = 0.0,
     h_max: float | None = None,
     max_anisotropy: float = np.inf,
-    gradation: float | None = 1.5,
+    gradation: float | None = 2.0,
     recovery: str = "least squares",
     combine: str = "intersection",
     growth: float = 4.0,

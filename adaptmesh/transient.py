@@ -136,7 +136,7 @@ def transient_loop(
     h_min: float = 0.0,
     h_max: float | None = None,
     max_anisotropy: float = np.inf,
-    gradation: float | None = 1.5,
+    gradation: float | None = 2.0,
     recovery: str = "least squares",
     combine: str = "intersection",
     transfer: str = "conservative",

@@ -30,7 +30,7 @@ def metric_from_adjoint(
     h_min: float = 0.0,
     h_max: float = np.inf,
     max_anisotropy: float = np.inf,
-    gradation: float | None = 1.5,
+    gradation: float | None = 2.0,
     law: str = "mixed",
     recovery: str = "least squares",
 ) -> Background:

@@ -39,7 +39,7 @@ class Limits:
     max_anisotropy : float
         Bound on the ratio of the two sizes at a point.
     gradation : float or None
-        Bound on growth, the `beta` of `graded`; None for no bound.
+        Bound on growth, the `beta` of `graded`; None for no bound. Measured in docs/theory.
     law : str
         Of growth, see `graded`.
     """
@@ -47,7 +47,7 @@ class Limits:
     h_min: float = 0.0
     h_max: float = np.inf
     max_anisotropy: float = np.inf
-    gradation: float | None = 1.5
+    gradation: float | None = 2.0
     law: str = "mixed"
 
     def bounded(self, metric: Floats) -> Floats:
