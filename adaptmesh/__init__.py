@@ -21,6 +21,8 @@ from .errors import (
     LoopInterrupted,
     MetricError,
     TransferError,
+    TransientError,
+    TransientInterrupted,
 )
 from .explain import Explanation, explain
 from .generate import generate, predict
@@ -38,7 +40,8 @@ from .simplify import Dropped, simplify
 from .solved import Solution
 from .stopping import Budget
 from .transfer import transfer
-from .transient import Interval, TransientError, TransientHistory, transient_loop
+from .transient import transient_loop
+from .transient_history import Interval, TransientHistory
 from .triangulate import delaunay
 from .validate import Validity, validate
 
@@ -71,6 +74,7 @@ __all__ = [
     "TransferError",
     "TransientError",
     "TransientHistory",
+    "TransientInterrupted",
     "Validity",
     "adapt",
     "adapt_loop",

@@ -8,6 +8,7 @@ from metrics.errors import AdaptmeshError, MetricError
 
 if TYPE_CHECKING:
     from .history import History
+    from .transient_history import TransientHistory
 
 __all__ = [
     "AdaptmeshError",
@@ -18,6 +19,8 @@ __all__ = [
     "LoopInterrupted",
     "MetricError",
     "TransferError",
+    "TransientError",
+    "TransientInterrupted",
 ]
 
 
@@ -62,3 +65,34 @@ class LoopInterrupted(KeyboardInterrupt):
     def __init__(self, history: History, iteration: int, stage: str) -> None:
         self.history, self.iteration, self.stage = history, iteration, stage
         super().__init__(f"iteration {iteration}, {stage}: interrupted")
+
+
+class TransientError(AdaptmeshError):
+    """A loop in time that was stopped by an exception, which is its ``__cause__``.
+
+    Attributes
+    ----------
+    history : TransientHistory
+        All intervals that were completed before.
+    sweep, interval : int
+        The one that was not.
+    stage : str
+        Where in it: ``"metric"``, ``"adapt"``, ``"initial"``, ``"transfer"``, ``"advance"``,
+        ``"save"`` or ``"callback"``.
+    """
+
+    def __init__(
+        self, history: TransientHistory, sweep: int, interval: int, stage: str, error: Exception
+    ) -> None:
+        self.history, self.sweep, self.interval, self.stage = history, sweep, interval, stage
+        super().__init__(
+            f"sweep {sweep}, interval {interval}, {stage}: {type(error).__name__}: {error}"
+        )
+
+
+class TransientInterrupted(KeyboardInterrupt):
+    """Ctrl-C in a loop in time; its attributes are those of `TransientError`."""
+
+    def __init__(self, history: TransientHistory, sweep: int, interval: int, stage: str) -> None:
+        self.history, self.sweep, self.interval, self.stage = history, sweep, interval, stage
+        super().__init__(f"sweep {sweep}, interval {interval}, {stage}: interrupted")

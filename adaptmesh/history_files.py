@@ -8,9 +8,7 @@ folder/
 
 from __future__ import annotations
 
-import io
 import json
-import zipfile
 from collections.abc import Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -22,16 +20,14 @@ import numpy as np
 from .errors import FormatError
 from .history import History, Iteration, OnDisk, Seconds, Snapshot
 from .io.files import read_bytes, replace_files
-from .mesh import Mesh
 from .solved import Solved
+from .stored import damage_named, decoded, encoded
 
 if TYPE_CHECKING:
     from .domain import Domain
 
 LIST = "history.json"
 VERSION = 1
-
-MESH_ARRAYS = ("points", "triangles", "regions", "edges", "edge_tags")
 
 
 def save(history: History, folder: Path) -> None:
@@ -83,9 +79,9 @@ def make(folder: Path) -> None:
         raise FormatError(f"{folder}: cannot be made a folder: {error.strerror}") from None
 
 
-def refuse_history(folder: Path) -> None:
+def refuse_history(folder: Path, name: str = LIST) -> None:
     """Nobody's history is written over by a new one."""
-    if (folder / LIST).exists():
+    if (folder / name).exists():
         raise FormatError(
             f"{folder}: there is a history in this folder; give it as `resume` too to go on with "
             "it, or choose another folder"
@@ -97,7 +93,7 @@ def load(folder: Path, domain: Domain | None) -> History:
     path = folder / LIST
     if not path.exists():
         raise FormatError(f"{folder}: there is no history here ({LIST} is missing)")
-    try:
+    with damage_named(path):
         content = json.loads(read_bytes(path))
         if content["version"] != VERSION:
             raise FormatError(f"{path}: version {content['version']}; this reads {VERSION}")
@@ -105,8 +101,6 @@ def load(folder: Path, domain: Domain | None) -> History:
         history = History(
             iterations, content["reason"], bool(content["converged"]), content["options"]
         )
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise FormatError(f"{path}: is damaged: {type(error).__name__} {error}") from error
     for k, iteration in enumerate(history):
         file = _path(folder, iteration)
         if iteration.number != k or not file.exists():
@@ -116,46 +110,27 @@ def load(folder: Path, domain: Domain | None) -> History:
 
 def read_snapshot(path: Path, domain: Domain | None) -> Snapshot:
     """The arrays of one iteration."""
-    data = io.BytesIO(read_bytes(path))
-    try:
-        with np.load(data, allow_pickle=False) as arrays:
-            notes = json.loads(str(arrays["notes"]))
-            mesh = Mesh(
-                **{name: arrays[name] for name in MESH_ARRAYS},
-                names=notes["names"],
-                region_names=notes["region_names"],
-                domain=domain,
-            )
-            fields = {name: arrays[f"field_{k}"] for k, name in enumerate(notes["fields"])}
-            given = arrays["given"] if notes["metric_was_given"] else None
-            metric = arrays["metric"]
-    except (ValueError, KeyError, TypeError, zipfile.BadZipFile, EOFError) as error:
-        raise FormatError(f"{path}: is damaged: {type(error).__name__} {error}") from error
-    for array in (*fields.values(), metric):
-        array.flags.writeable = False
-    solved = Solved(MappingProxyType(fields), notes["is_bare"], given, notes["errors"])
-    return Snapshot(mesh, solved, metric)
+    mesh, arrays, notes = decoded(path, domain)
+    with damage_named(path):
+        fields = {name: arrays[f"field_{k}"] for k, name in enumerate(notes["fields"])}
+        given = arrays["given"] if notes["metric_was_given"] else None
+        solved = Solved(MappingProxyType(fields), notes["is_bare"], given, notes["errors"])
+        return Snapshot(mesh, solved, arrays["metric"])
 
 
 def _encoded(snapshot: Snapshot) -> bytes:
-    mesh, solved = snapshot.mesh, snapshot.solved
-    arrays = {name: getattr(mesh, name) for name in MESH_ARRAYS}
-    arrays |= {f"field_{k}": values for k, values in enumerate(solved.fields.values())}
+    solved = snapshot.solved
+    arrays = {f"field_{k}": values for k, values in enumerate(solved.fields.values())}
     arrays["metric"] = snapshot.metric
     if solved.metric is not None:
         arrays["given"] = solved.metric
     notes = {
-        "names": dict(mesh.names),
-        "region_names": dict(mesh.region_names),
         "fields": list(solved.fields),
         "is_bare": solved.is_bare,
         "metric_was_given": solved.metric is not None,
         "errors": dict(solved.errors),
     }
-    arrays["notes"] = np.array(json.dumps(notes))
-    out = io.BytesIO()
-    np.savez(out, **arrays)
-    return out.getvalue()
+    return encoded(snapshot.mesh, arrays, notes)
 
 
 def _numbers(iteration: Iteration) -> dict[str, Any]:

@@ -182,8 +182,9 @@ class Clock:
     seconds: Seconds = field(default_factory=Seconds)
 
     @contextmanager
-    def of(self, stage: str) -> Iterator[None]:
-        self.stage = stage
+    def of(self, stage: str, name: str = "") -> Iterator[None]:
+        """Count the time to a stage, which an error calls by another name if that is given."""
+        self.stage = name or stage
         start = time.perf_counter()
         yield
         self.seconds += Seconds(**{stage: time.perf_counter() - start})

@@ -69,8 +69,8 @@ class Solved:
         return fields[UNNAMED] if self.is_bare else dict(fields)
 
 
-def as_solved(answer: Any, mesh: Mesh) -> Solved:
-    """What solve returned, in one form.
+def as_solved(answer: Any, mesh: Mesh, giver: str = "solve") -> Solved:
+    """What solve, or another function of the user's, returned, in one form.
 
     Raises
     ------
@@ -78,33 +78,33 @@ def as_solved(answer: Any, mesh: Mesh) -> Solved:
         For what is neither fields nor a metric; for fields of another length, or with a value that
         is not finite; for a metric that is not one.
     """
-    given = answer if isinstance(answer, Solution) else _as_solution(answer, mesh)
+    given = answer if isinstance(answer, Solution) else _as_solution(answer, mesh, giver)
     is_bare = not isinstance(given.fields, Mapping)
     named = {UNNAMED: given.fields} if is_bare else given.fields
     fields = {str(name): _checked_field(values, name, mesh) for name, values in named.items()}
     metric = None if given.metric is None else _checked_metric(given.metric, mesh)
     if not fields and metric is None:
-        raise TypeError("solve returned neither fields nor a metric")
+        raise TypeError(f"{giver} returned neither fields nor a metric")
     return Solved(MappingProxyType(fields), is_bare, metric, _checked_errors(given.errors))
 
 
-def _as_solution(answer: Any, mesh: Mesh) -> Solution:
+def _as_solution(answer: Any, mesh: Mesh, giver: str) -> Solution:
     """Mappings and (n,) are fields; control spaces, (n, 3) and (n, 2, 2) are metrics."""
     if isinstance(answer, Mapping):
         return Solution(answer)
     if isinstance(answer, ControlSpace):
         return Solution(metric=answer)
     if answer is None:
-        raise TypeError("solve returned None; is a return statement missing?")
-    array = _as_array(answer, "what solve returned")
+        raise TypeError(f"{giver} returned None; is a return statement missing?")
+    array = _as_array(answer, f"what {giver} returned")
     if array.ndim == 1:
         return Solution(array)
     n = len(mesh.points)
     if array.shape in ((n, 3), (n, 2, 2)):
         return Solution(metric=array)
     raise ValueError(
-        f"solve returned an array of the shape {array.shape}: values at the {n} vertices ({n},) or "
-        f"a metric ({n}, 3) are wanted; fields with components go into a dict, by name"
+        f"{giver} returned an array of the shape {array.shape}: values at the {n} vertices ({n},) "
+        f"or a metric ({n}, 3) are wanted; fields with components go into a dict, by name"
     )
 
 

@@ -61,8 +61,8 @@ class Steering:
         check_norm(self.p)
         if self.target_vertices is not None and self.error is not None:
             raise ValueError("give one target: target_vertices or error")
-        if self.target_vertices is not None and not self.target_vertices >= 3:
-            raise ValueError(f"target_vertices={self.target_vertices!r}: at least 3 are needed")
+        if self.target_vertices is not None:
+            check_target(self.target_vertices)
         if self.target_vertices is not None and self.target_vertices > self.max_vertices:
             raise ValueError(
                 f"target_vertices={self.target_vertices!r} is more than the budget of "
@@ -71,8 +71,7 @@ class Steering:
         errors = self.error.values() if isinstance(self.error, Mapping) else [self.error]
         if self.error is not None and not all(0 < e < np.inf for e in errors if e is not None):
             raise ValueError(f"error={self.error!r}: must be positive")
-        if isinstance(self.fields, str):
-            raise TypeError(f"fields={self.fields!r}: give a list of names, [{self.fields!r}]")
+        check_fields(self.fields)
         if not self.growth > 1:
             raise ValueError(f"growth={self.growth!r}: must be more than 1")
         if not self.order > 0:
@@ -106,7 +105,7 @@ class Steering:
         points, triangles = mesh.points, mesh.triangles
         curvatures = {
             name: Curvature.of(points, triangles, values, self.recovery)
-            for name, values in self._steering_fields(mesh, solved).items()
+            for name, values in self._bent_fields(mesh, solved).items()
         }
         errors = dict(solved.errors) or {
             name: norm(c.interpolation_errors(self.p), self.p) for name, c in curvatures.items()
@@ -132,28 +131,16 @@ class Steering:
         )
         return metric, errors
 
-    def _steering_fields(self, mesh: Mesh, solved: Solved) -> dict[str, Array]:
-        """Real fields at the vertices that are not the same everywhere, (n,) or (n, k)."""
-        names = solved.fields if self.fields is None else self.fields
-        chosen = {}
-        for name in names:
-            if name not in solved.fields:
-                known = ", ".join(map(repr, solved.fields)) or "none"
-                raise MetricError(f"there is no field {name!r} to steer by; solve gave {known}")
-            values = solved.fields[name]
-            if not can_steer(values, mesh):
-                if self.fields is not None:
-                    raise MetricError(
-                        f"field {name!r} cannot steer: real values at the vertices are needed"
-                    )
-            elif np.ptp(values.reshape(len(values), -1), axis=0).any():
-                chosen[name] = values.reshape(len(values), -1)
-        if not chosen:
+    def _bent_fields(self, mesh: Mesh, solved: Solved) -> dict[str, Array]:
+        """The fields that steer and are not the same everywhere, (n, k)."""
+        chosen = steering_fields(self.fields, solved.fields, mesh)
+        bent = {n: v.reshape(len(v), -1) for n, v in chosen.items() if not is_constant(v)}
+        if not bent:
             raise MetricError(
-                "no field asks for any size: real values at the vertices, "
-                f"not the same everywhere, are needed; solve gave {', '.join(solved.fields)}"
+                f"no field asks for any size: {', '.join(map(repr, chosen))} "
+                f"{'are' if len(chosen) > 1 else 'is'} the same everywhere"
             )
-        return chosen
+        return bent
 
     def _count(self, n_points: int, errors: Mapping[str, float]) -> float | None:
         """How many vertices the next mesh is to have; None if only a metric can say."""
@@ -175,8 +162,49 @@ class Steering:
         return float(self.error[name])
 
 
-def can_steer(values: Array, mesh: Mesh) -> bool:
-    """Whether a field is real and at the vertices."""
+def steering_fields(
+    names: Sequence[str] | None, fields: Mapping[str, Array], mesh: Mesh
+) -> dict[str, Array]:
+    """The fields of these names, or else all that can steer: real ones at the vertices."""
+    if names is None:
+        chosen = {name: values for name, values in fields.items() if _can_steer(values, mesh)}
+        if not chosen:
+            raise MetricError(
+                "no field can steer: real values at the vertices are needed; there "
+                f"{'are' if fields else 'is'} {', '.join(map(repr, fields)) or 'none'}"
+            )
+        return chosen
+    for name in names:
+        if name not in fields:
+            known = ", ".join(map(repr, fields)) or "none"
+            raise MetricError(f"there is no field {name!r} to steer by; solve gave {known}")
+        if not _can_steer(fields[name], mesh):
+            raise MetricError(
+                f"field {name!r} cannot steer: real values at the vertices are needed"
+            )
+    return {name: fields[name] for name in names}
+
+
+def is_constant(values: Array) -> bool:
+    """Whether a field, and each of its components, is the same everywhere."""
+    return not np.ptp(values.reshape(len(values), -1), axis=0).any()
+
+
+def check_target(vertices: float) -> None:
+    """Refuse a number of vertices of which no mesh can be."""
+    if not 3 <= vertices < np.inf:
+        raise ValueError(f"target_vertices={vertices!r}: a number, at least 3, is needed")
+
+
+def check_fields(names: Sequence[str] | None) -> None:
+    """Refuse a name where a list of names is wanted, and none at all."""
+    if isinstance(names, str):
+        raise TypeError(f"fields={names!r}: give a list of names, [{names!r}]")
+    if names is not None and not names:
+        raise ValueError("fields=[]: give the names of those that steer the mesh, or leave it out")
+
+
+def _can_steer(values: Array, mesh: Mesh) -> bool:
     return values.dtype.kind != "c" and space_of(values, mesh) == "P1"
 
 

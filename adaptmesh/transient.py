@@ -17,109 +17,35 @@ comes.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from metrics import Background, Curvature, Limits, absolute, combined
-from metrics.nodal import predicted_vertices
-from metrics.solution import optimal_tensors
+from metrics import Background, Limits
 
+from . import transient_files as files
 from .adapt import adapt
-from .errors import AdaptmeshError
-from .loop import largest_size, with_domain
+from .errors import TransientError, TransientInterrupted
+from .history import PathLike
+from .history_files import refuse_history
+from .loop import Clock, largest_size, with_domain
 from .mesh import Mesh
 from .solved import Solved, as_solved, space_of
-from .steering import can_steer
-from .transfer import METHODS, transfer
+from .steering_in_time import SteeringInTime
+from .transfer import METHODS
+from .transfer import transfer as transferred
+from .transient_history import Interval, TransientHistory
 
 Floats = NDArray[np.float64]
-Fields = Mapping[str, NDArray[Any]]
 
-IN_TIME = ("average", "intersection")
-PRECISION = 1e-3  # of the mean number of vertices predicted
-TRIALS = 8
-FLATNESS = 1e-8  # curvature below this share of the largest is not told from none
-
-
-@dataclass(frozen=True, eq=False)
-class Interval:
-    """What happened on one mesh.
-
-    Attributes
-    ----------
-    start, end : float
-        Of the interval.
-    mesh : Mesh
-    first, last : mapping of str to array
-        The fields at its start, as they were carried there, and at its end.
-    times : (k,) array
-        Of the samples from which the metric was made.
-    """
-
-    start: float
-    end: float
-    mesh: Mesh
-    first: Fields
-    last: Fields
-    times: Floats
-
-
-class TransientError(AdaptmeshError):
-    """A sweep that was stopped by an exception, which is its ``__cause__``.
-
-    Attributes
-    ----------
-    history : TransientHistory
-        All sweeps that were completed, and the intervals of the one that was not.
-    sweep, interval : int
-        Where it stopped; the interval is -1 while meshes were made for the sweep.
-    """
-
-    def __init__(
-        self, history: TransientHistory, sweep: int, interval: int, error: BaseException
-    ) -> None:
-        self.history, self.sweep, self.interval = history, sweep, interval
-        super().__init__(f"sweep {sweep}, interval {interval}: {type(error).__name__}: {error}")
-
-
-@dataclass(frozen=True, eq=False)
-class TransientHistory:
-    """The intervals of each sweep; print it.
-
-    Attributes
-    ----------
-    sweeps : tuple of tuple of Interval
-        The last is the best.
-    """
-
-    sweeps: tuple[tuple[Interval, ...], ...] = ()
-
-    @property
-    def intervals(self) -> tuple[Interval, ...]:
-        """Those of the last sweep."""
-        return self.sweeps[-1] if self.sweeps else ()
-
-    def with_sweep(self, intervals: Sequence[Interval]) -> TransientHistory:
-        """The same with another sweep, if it has any intervals."""
-        return TransientHistory((*self.sweeps, tuple(intervals))) if intervals else self
-
-    def mean_vertices(self, sweep: int = -1) -> float:
-        """The number of vertices, averaged over time."""
-        intervals = self.sweeps[sweep]
-        weights = [i.end - i.start for i in intervals]
-        return float(np.average([len(i.mesh.points) for i in intervals], weights=weights))
-
-    def __str__(self) -> str:
-        lines = ["sweep  vertices, averaged over time    least     most"]
-        for k, sweep in enumerate(self.sweeps):
-            counts = [len(i.mesh.points) for i in sweep]
-            lines.append(f"{k:5d}  {self.mean_vertices(k):28.0f} {min(counts):8d} {max(counts):8d}")
-        return "\n".join(lines)
+ROUNDING = 1e-9
+"""Share of an interval by which the last time may miss its end, as sums of steps do."""
 
 
 def transient_loop(
@@ -142,6 +68,8 @@ def transient_loop(
     transfer: str = "conservative",
     keep_bounds: bool = False,
     callback: Callable[[int, int, Interval], object] | None = None,
+    save: PathLike | None = None,
+    resume: TransientHistory | PathLike | None = None,
 ) -> TransientHistory:
     """Solve in time, on a mesh for each interval, until the meshes fit what happens on them.
 
@@ -150,7 +78,8 @@ def transient_loop(
     advance : callable
         Called as ``advance(mesh, fields, t0, t1)`` with the fields at t0, in the form in which
         `initial` returned them. It yields ``(t, fields)`` as it steps from t0 to t1, as often as
-        the solution should be looked at, and last at t1; or it returns the fields at t1.
+        the solution should be looked at, and last at t1; or it returns the fields at t1. Fields
+        keep their names from first to last.
     initial : callable
         Called as ``initial(mesh)``: the fields at the first time, an array (n,) or a dict by name,
         as for `adapt_loop`.
@@ -178,6 +107,12 @@ def transient_loop(
         As for `adaptmesh.transfer`.
     callback : callable, optional
         Called as ``callback(sweep, number, interval)`` when an interval is complete.
+    save : path, optional
+        A folder, to which every interval is written when it is complete.
+    resume : TransientHistory or path, optional
+        What an earlier call left, or the folder where it was saved. The loop goes on at the start
+        of the interval that was not completed, and gives what it would have given without
+        interruption, bit for bit, if it is called with the same arguments.
 
     Returns
     -------
@@ -186,7 +121,13 @@ def transient_loop(
     Raises
     ------
     TransientError
-        For any exception on the way; it has the history until then.
+        For any exception in `advance` or `initial`, or in what was made of their results: it says
+        in which sweep and interval, and holds the history until then. The exception itself is its
+        ``__cause__``.
+    TransientInterrupted
+        A KeyboardInterrupt that holds the history.
+    ValueError, TypeError
+        For options that make no sense, before anything is done.
 
     Notes
     -----
@@ -204,46 +145,153 @@ def transient_loop(
     flows. Journal of Computational Physics 231 (2012), 6323-6348: global, with averages in time.
     """
     ends = _checked_times(times)
-    if transfer not in METHODS:
-        raise ValueError(f"transfer={transfer!r} is none of {', '.join(map(repr, METHODS))}")
-    if in_time not in IN_TIME:
-        raise ValueError(f"in_time={in_time!r} is none of {', '.join(map(repr, IN_TIME))}")
+    n, lengths = len(ends) - 1, np.diff(ends)
     if sweeps < 1 or sweeps != int(sweeps):
         raise ValueError(f"sweeps={sweeps!r}: a whole number from 1 on is wanted")
-    if h_max is None:
-        h_max = largest_size(mesh)
-    limits = Limits(h_min, h_max, max_anisotropy, gradation)
-    steering = _Steering(fields, recovery, in_time, p, limits, combine, target_vertices)
+    mesh = with_domain(mesh)
+    limits = Limits(
+        h_min, largest_size(mesh) if h_max is None else h_max, max_anisotropy, gradation
+    )
+    steering = SteeringInTime(target_vertices, p, fields, limits, recovery, combine, in_time)
     solver = _Solver(initial, advance, transfer, keep_bounds)
-    meshes = [with_domain(mesh)] * (len(ends) - 1)
-    history = TransientHistory()
-    hessians: list[list[Floats]] = []
-    for sweep in range(int(sweeps)):
-        if sweep:
-            with _explained(history, sweep, -1):
-                fitted = steering.metrics(meshes, hessians, np.diff(ends))
-                meshes = [adapt(m, f) for m, f in zip(meshes, fitted, strict=True)]
-        intervals: list[Interval] = []
-        hessians = []
-        for number, (t0, t1) in enumerate(itertools.pairwise(ends.tolist())):
-            with _explained(history.with_sweep(intervals), sweep, number):
-                first = solver.first(meshes[number], intervals)
-                interval, curved = solver.advanced(meshes[number], first, t0, t1, steering)
-                intervals.append(interval)
-                hessians.append(curved)
-                if callback is not None:
-                    callback(sweep, number, interval)
-        history = history.with_sweep(intervals)
+    history = _resumed(resume, mesh, ends)
+    folder = _begun(save, history, resume)
+    fitted: list[Background] = []
+    for place in range(sum(map(len, history.sweeps)), int(sweeps) * n):
+        sweep, number = divmod(place, n)
+        clock = Clock()
+        with _explained(history, sweep, number, clock):
+            here = mesh
+            if sweep:
+                before = history.sweeps[sweep - 1]
+                if number == 0 or not fitted:
+                    with clock.of("metric"):
+                        fitted = steering.metrics(
+                            [i.mesh for i in before], [i.hessians for i in before], lengths
+                        )
+                with clock.of("adapt"):
+                    here = adapt(before[number].mesh, fitted[number])
+            first = solver.first(here, history.intervals[-1] if number else None, clock)
+            interval = solver.advanced(here, first, ends[number : number + 2], steering, clock)
+            history = history.with_interval(interval, sweep)
+        with _explained(history, sweep, number, clock):
+            if folder is not None:
+                clock.stage = "save"
+                files.append(history, folder)
+            if callback is not None:
+                clock.stage = "callback"
+                callback(sweep, number, interval)
     return history
 
 
-@contextmanager
-def _explained(history: TransientHistory, sweep: int, interval: int) -> Iterator[None]:
-    """Any exception, with where it happened and what there was until then."""
-    try:
-        yield
-    except Exception as error:
-        raise TransientError(history, sweep, interval, error) from error
+@dataclass(frozen=True)
+class _Solver:
+    """What the user gave, and the form in which fields come and go."""
+
+    initial: Callable[[Mesh], Any]
+    advance: Callable[[Mesh, Any, float, float], Any]
+    method: str
+    keep_bounds: bool
+
+    def __post_init__(self) -> None:
+        for name in ("initial", "advance"):
+            if not callable(getattr(self, name)):
+                raise TypeError(f"{name} must be a function")
+        if self.method not in METHODS:
+            raise ValueError(f"transfer={self.method!r} is none of {', '.join(map(repr, METHODS))}")
+
+    def first(self, mesh: Mesh, before: Interval | None, clock: Clock) -> Solved:
+        """The fields at the start of an interval: the initial ones, or those of the one before."""
+        if before is None:
+            with clock.of("solve", "initial"):
+                return _fields_of(self.initial(mesh), mesh, "initial")
+        with clock.of("transfer"):
+            carried = transferred(
+                before.last,
+                before.mesh,
+                mesh,
+                method=self.method,
+                space={name: space_of(values, before.mesh) for name, values in before.last.items()},
+                keep_bounds=self.keep_bounds,
+            )
+            return replace(as_solved(carried, mesh), is_bare=before.is_bare)
+
+    def advanced(
+        self, mesh: Mesh, first: Solved, ends: Floats, steering: SteeringInTime, clock: Clock
+    ) -> Interval:
+        """Go through an interval."""
+        with clock.of("metric"):
+            times, hessians = [float(ends[0])], [steering.hessians(mesh, first.fields)]
+        last = first
+        for t, given in self.samples(mesh, first, float(ends[0]), float(ends[1]), clock):
+            last = _fields_of(given, mesh, "advance")
+            if last.fields.keys() != first.fields.keys():
+                raise ValueError(
+                    f"advance gave {_names(last)} at t = {t:g}, but began with {_names(first)}: "
+                    "fields keep their names"
+                )
+            with clock.of("metric"):
+                times.append(t)
+                hessians.append(steering.hessians(mesh, last.fields))
+        clock.stage = "advance"
+        if times[-1] != ends[1]:
+            raise ValueError(
+                f"advance stopped at t = {times[-1]:g}; the interval ends at {ends[1]:g}"
+            )
+        with clock.of("metric"):
+            over_time = steering.over_time(np.array(times), hessians)
+        return Interval(
+            start=times[0],
+            end=times[-1],
+            mesh=mesh,
+            first=first.fields,
+            last=last.fields,
+            times=np.array(times),
+            hessians=MappingProxyType(dict(over_time)),
+            seconds=clock.seconds,
+            is_bare=first.is_bare,
+        )
+
+    def samples(
+        self, mesh: Mesh, first: Solved, t0: float, t1: float, clock: Clock
+    ) -> Iterator[tuple[float, Any]]:
+        """What advance yields, or the fields at the end if it returns these."""
+        with clock.of("solve", "advance"):
+            answer = self.advance(mesh, first.as_returned(first.fields), t0, t1)
+        if not isinstance(answer, Iterator):
+            yield t1, answer
+            return
+        before = t0
+        while True:
+            with clock.of("solve", "advance"):
+                sample = next(answer, None)
+            if sample is None:
+                return
+            if not isinstance(sample, tuple) or len(sample) != 2:
+                raise TypeError(
+                    f"advance yielded {type(sample).__name__}: a time and the fields then, "
+                    "`yield t, fields`, are wanted"
+                )
+            t = float(sample[0])
+            if abs(t - t1) <= ROUNDING * (t1 - t0):
+                t = t1
+            if not before < t <= t1:
+                raise ValueError(f"advance came from t = {before:g} to {t:g}; the end is {t1:g}")
+            before = t
+            yield t, sample[1]
+
+
+def _fields_of(answer: Any, mesh: Mesh, giver: str) -> Solved:
+    solved = as_solved(answer, mesh, giver)
+    if solved.metric is not None or solved.errors:
+        raise TypeError(
+            f"{giver} returned a metric or errors: in time only fields can steer the meshes"
+        )
+    return solved
+
+
+def _names(solved: Solved) -> str:
+    return ", ".join(map(repr, solved.fields))
 
 
 def _checked_times(times: ArrayLike) -> Floats:
@@ -253,140 +301,57 @@ def _checked_times(times: ArrayLike) -> Floats:
     return ends
 
 
-@dataclass
-class _Solver:
-    """What the user gave, and the form in which fields come and go."""
-
-    initial: Callable[[Mesh], Any]
-    advance: Callable[[Mesh, Any, float, float], Any]
-    method: str
-    keep_bounds: bool
-    is_bare: bool = False
-
-    def first(self, mesh: Mesh, intervals: list[Interval]) -> Solved:
-        """The fields at the start of an interval: the initial ones, or those of the one before."""
-        if not intervals:
-            solved = as_solved(self.initial(mesh), mesh)
-            self.is_bare = solved.is_bare
-            return solved
-        before = intervals[-1]
-        carried = transfer(
-            before.last,
-            before.mesh,
-            mesh,
-            method=self.method,
-            space={name: space_of(values, before.mesh) for name, values in before.last.items()},
-            keep_bounds=self.keep_bounds,
-        )
-        return replace(as_solved(carried, mesh), is_bare=self.is_bare)
-
-    def advanced(
-        self, mesh: Mesh, first: Solved, t0: float, t1: float, steering: _Steering
-    ) -> tuple[Interval, list[Floats]]:
-        """Go through an interval; what happened, and the Hessian of each field over it."""
-        times, kept, last = [t0], [steering.curvature(mesh, first.fields)], first
-        for t, given in _samples(self.advance(mesh, first.as_returned(first.fields), t0, t1), t1):
-            if not times[-1] < t <= t1:
-                raise ValueError(f"advance came from t = {times[-1]:g} to {t:g}; the end is {t1:g}")
-            last = as_solved(given, mesh)
-            times.append(float(t))
-            kept.append(steering.curvature(mesh, last.fields))
-        if times[-1] != t1:
-            raise ValueError(f"advance stopped at t = {times[-1]:g}; the interval ends at {t1:g}")
-        interval = Interval(t0, t1, mesh, first.fields, last.fields, np.array(times))
-        return interval, steering.over_time(np.array(times), kept)
-
-
-def _samples(answer: Any, end: float) -> Iterator[tuple[float, Any]]:
-    """What advance yields, or the fields at the end if it returns these."""
-    if isinstance(answer, Iterator):
-        yield from answer
+def _resumed(
+    resume: TransientHistory | PathLike | None, mesh: Mesh, ends: Floats
+) -> TransientHistory:
+    """The history to go on with: empty, or an earlier one of this mesh and these times."""
+    if resume is None:
+        return TransientHistory()
+    if isinstance(resume, TransientHistory):
+        history = resume
     else:
-        yield end, answer
-
-
-@dataclass(frozen=True)
-class _Steering:
-    """From fields in time to metrics for all intervals."""
-
-    fields: Sequence[str] | None
-    recovery: str
-    in_time: str
-    p: float
-    limits: Limits
-    combine: str
-    target: float
-
-    def curvature(self, mesh: Mesh, fields: Fields) -> list[Floats]:
-        """The absolute Hessian of each field that steers."""
-        chosen = [
-            name
-            for name, values in fields.items()
-            if (name in self.fields if self.fields is not None else can_steer(values, mesh))
-        ]
-        missing = set(self.fields or ()) - set(chosen)
-        if missing or not chosen:
-            names = ", ".join(map(repr, fields))
+        history = TransientHistory.load(resume, mesh.domain)
+    whole = list(itertools.pairwise(ends.tolist()))
+    for k, sweep in enumerate(history.sweeps):
+        had = [(i.start, i.end) for i in sweep]
+        if had != (whole[: len(had)] if k == len(history.sweeps) - 1 else whole):
             raise ValueError(
-                f"no field {min(missing, default='')!r} to steer by; there are {names}"
+                f"the history to resume has {len(had)} intervals from {had[0][0]:g} to "
+                f"{had[-1][1]:g} in sweep {k}, which are not those of times: give the same"
             )
-        return [self._absolute(mesh, fields[name]) for name in chosen]
-
-    def _absolute(self, mesh: Mesh, values: NDArray[Any]) -> Floats:
-        """Zero where a field is still the same everywhere, as before anything has happened."""
-        if not np.ptp(values.reshape(len(values), -1), axis=0).any():
-            return np.zeros((len(values), 3))
-        return Curvature.of(mesh.points, mesh.triangles, values, self.recovery).absolute
-
-    def over_time(self, times: Floats, samples: list[list[Floats]]) -> list[Floats]:
-        """One Hessian of each field for an interval: the mean by trapezoids, or the finest."""
-        weights = np.gradient(times)
-        weights[[0, -1]] /= 2
-        out = []
-        for of_field in zip(*samples, strict=True):
-            if self.in_time == "average":
-                out.append(np.average(of_field, axis=0, weights=weights))
-            else:
-                bent = [h for h in of_field if h.any()]
-                out.append(combined(bent) if bent else of_field[0])
-        return out
-
-    def metrics(
-        self, meshes: list[Mesh], hessians: list[list[Floats]], lengths: Floats
-    ) -> list[Background]:
-        """One factor for all intervals, by which the mean number of vertices is the target.
-
-        All meshes side by side are one mesh of many parts, to which the metric of a solution
-        applies as it stands; its total is corrected until the mean over time is right.
-        """
-        n_of = np.cumsum([0, *(len(m.points) for m in meshes)])
-        points = np.concatenate([m.points for m in meshes])
-        triangles = np.concatenate([m.triangles + k for m, k in zip(meshes, n_of, strict=False)])
-        stacked = [
-            absolute(h, FLATNESS * np.abs(h).max())
-            for h in map(np.concatenate, zip(*hessians, strict=True))
-            if h.any()
-        ]
-        total = self.target * len(meshes)
-        for _ in range(TRIALS):
-            whole = optimal_tensors(
-                points,
-                triangles,
-                stacked,
-                target_vertices=total,
-                p=self.p,
-                limits=self.limits,
-                combine=self.combine,
+    if history.sweeps:
+        first = history.sweeps[0][0].mesh
+        same = np.array_equal(first.points, mesh.points)
+        if not (same and np.array_equal(first.triangles, mesh.triangles)):
+            raise ValueError(
+                f"the history to resume began with another mesh ({len(first.points)} vertices) "
+                f"than is given ({len(mesh.points)} vertices)"
             )
-            parts = [whole[a:b] for a, b in itertools.pairwise(n_of)]
-            counts = [
-                predicted_vertices(m.points, m.triangles, part)
-                for m, part in zip(meshes, parts, strict=True)
-            ]
-            mean = float(np.average(counts, weights=lengths))
-            if abs(mean / self.target - 1) < PRECISION:
-                break
-            total *= self.target / mean
-        return [
-            Background(m.points, m.triangles, part) for m, part in zip(meshes, parts, strict=True)
-        ]
+    return history
+
+
+def _begun(
+    save: PathLike | None, history: TransientHistory, resume: TransientHistory | PathLike | None
+) -> Path | None:
+    """The folder to save to; it has what there is to go on with, and nobody else's history."""
+    if save is None:
+        return None
+    folder = Path(save)
+    is_there = isinstance(resume, (str, Path)) and Path(resume).resolve() == folder.resolve()
+    if not is_there:
+        refuse_history(folder, files.LIST)
+        files.save(history, folder)
+    return folder
+
+
+@contextmanager
+def _explained(
+    history: TransientHistory, sweep: int, interval: int, clock: Clock
+) -> Iterator[None]:
+    """Any exception, with where it happened and what there was until then."""
+    try:
+        yield
+    except KeyboardInterrupt as interrupt:
+        raise TransientInterrupted(history, sweep, interval, clock.stage) from interrupt
+    except Exception as error:
+        raise TransientError(history, sweep, interval, clock.stage, error) from error

@@ -5,6 +5,8 @@ import pytest
 
 import adaptmesh as am
 from adaptmesh import TransientError, transient_loop
+from adaptmesh.steering_in_time import SteeringInTime
+from metrics import Limits
 
 DOMAIN = am.Domain.rectangle(0, 0, 2, 1)
 TIMES = [0, 0.5, 1.0]
@@ -108,13 +110,11 @@ def test_intersection_and_several_fields():
 
 def test_the_average_in_time_is_that_of_trapezoids():
     """Of a Hessian that grows linearly in time, sampled unevenly: its value in the middle."""
-    from adaptmesh.transient import _Steering
-    from metrics import Limits
-
-    steering = _Steering(None, "least squares", "average", 2.0, Limits(), "intersection", 100)
+    limits, recovery = Limits(), "least squares"
+    steering = SteeringInTime(100, 2.0, None, limits, recovery, "intersection", "average")
     times = np.array([0.0, 0.1, 0.7, 1.0])
-    samples = [[np.array([[1 + t, 0.0, 2.0]])] for t in times]
-    (mean,) = steering.over_time(times, samples)
+    samples = [{"u": np.array([[1 + t, 0.0, 2.0]])} for t in times]
+    mean = steering.over_time(times, samples)["u"]
     np.testing.assert_allclose(mean, [[1.5, 0, 2]], atol=1e-12)
 
 
@@ -157,7 +157,8 @@ def failing(at):
 
 def test_an_exception_leaves_what_there_was():
     mesh = am.generate(DOMAIN, 0.2)
-    with pytest.raises(TransientError, match="sweep 0, interval 1: RuntimeError: diverged") as e:
+    says = "sweep 0, interval 1, advance: RuntimeError: diverged"
+    with pytest.raises(TransientError, match=says) as e:
         transient_loop(failing(0.5), lambda m: front(m, 0), mesh, TIMES, target_vertices=100)
     assert len(e.value.history.intervals) == 1
     assert isinstance(e.value.__cause__, RuntimeError)
@@ -171,6 +172,11 @@ def test_an_exception_leaves_what_there_was():
         (lambda mesh, t1: iter([]), "stopped at t = 0"),
         (lambda mesh, t1: np.full(len(mesh.points), np.nan), "not finite|nan"),
         (lambda mesh, t1: np.zeros(3), "3 values|shape"),
+        (lambda mesh, t1: iter([front(mesh, t1)]), "advance yielded ndarray: a time and the field"),
+        (lambda mesh, t1: None, "advance returned None"),
+        (lambda mesh, t1: {"u": front(mesh, t1)}, "advance gave 'u' at t = 0.5, but began with 's"),
+        (lambda mesh, t1: front(mesh, t1) * 1j, "no field can steer"),
+        (lambda mesh, t1: np.ones((len(mesh.points), 3)) * [1, 0, 1], "only fields can steer"),
     ],
 )
 def test_what_advance_may_not_do(answer, says):
@@ -192,7 +198,146 @@ def test_options_are_checked():
         ({"in_time": "maximum"}, "in_time"),
         ({"transfer": "magic"}, "transfer"),
         ({"sweeps": 0}, "sweeps"),
+        ({"target_vertices": np.nan}, "target_vertices=nan"),
+        ({"target_vertices": 2}, "target_vertices=2"),
+        ({"fields": "u"}, "give a list of names"),
+        ({"fields": []}, "give the names"),
+        ({"p": 0.5}, "p is that of"),
     ]:
         given = {"times": TIMES, "target_vertices": 100, **options}
-        with pytest.raises(ValueError, match=says):
+        with pytest.raises((ValueError, TypeError), match=says):
             transient_loop(known, lambda m: front(m, 0), mesh, **given)
+
+
+def test_sums_of_steps_need_not_end_at_the_last_bit():
+    def advance(mesh, u, t0, t1):
+        t = t0
+        for _ in range(10):
+            t += (t1 - t0) / 10
+            yield t, front(mesh, t)
+
+    mesh = am.generate(DOMAIN, 0.2)
+    times = [0, 0.3, 0.9]
+    got = transient_loop(advance, lambda m: front(m, 0), mesh, times, target_vertices=100, sweeps=1)
+    assert [i.times[-1] for i in got.intervals] == times[1:]
+
+
+class Diffusing:
+    """Steps that depend on what was carried; stopped in the middle of its k-th interval."""
+
+    def __init__(self, stop, error=KeyboardInterrupt):
+        self.left, self.error = stop, error
+
+    def __call__(self, mesh, fields, t0, t1):
+        for t in np.linspace(t0, t1, 4)[1:]:
+            if not self.left and t > t0 + 0.5 * (t1 - t0):
+                raise self.error
+            u = 0.5 * (fields["u"] + front(mesh, t))
+            fields = {"u": u, "area": mesh.areas}
+            yield t, fields
+        self.left -= 1
+
+
+def beginning(mesh):
+    return {"u": front(mesh, 0), "area": mesh.areas}
+
+
+def assert_same(one, two):
+    assert [len(s) for s in one.sweeps] == [len(s) for s in two.sweeps]
+    for a, b in zip(sum(one.sweeps, ()), sum(two.sweeps, ()), strict=True):
+        for name in ("points", "triangles", "regions", "edges", "edge_tags"):
+            np.testing.assert_array_equal(getattr(a.mesh, name), getattr(b.mesh, name))
+        assert a.mesh.names == b.mesh.names
+        assert (a.start, a.end, a.times.tolist()) == (b.start, b.end, b.times.tolist())
+        for name in ("first", "last", "hessians"):
+            mine, theirs = getattr(a, name), getattr(b, name)
+            assert list(mine) == list(theirs)
+            for field in mine:
+                np.testing.assert_array_equal(mine[field], theirs[field])
+
+
+@pytest.fixture(scope="module")
+def whole():
+    mesh = am.generate(DOMAIN, 0.15)
+    return mesh, transient_loop(
+        Diffusing(-1), beginning, mesh, TIMES, target_vertices=300, fields=["u"]
+    )
+
+
+@pytest.mark.parametrize("stop", [0, 1, 2, 5])
+def test_stopped_in_the_middle_of_an_interval_and_resumed(whole, stop, tmp_path):
+    mesh, expected = whole
+    options = {"target_vertices": 300, "fields": ["u"]}
+    with pytest.raises(am.TransientInterrupted, match=f"interval {stop % 2}, advance") as caught:
+        transient_loop(Diffusing(stop), beginning, mesh, TIMES, save=tmp_path / "run", **options)
+    left = caught.value.history
+    assert sum(map(len, left.sweeps)) == stop
+    in_memory = transient_loop(Diffusing(-1), beginning, mesh, TIMES, resume=left, **options)
+    assert_same(in_memory, expected)
+    run = tmp_path / "run"
+    transient_loop(Diffusing(-1), beginning, mesh, TIMES, resume=run, save=run, **options)
+    assert_same(am.TransientHistory.load(run), expected)
+
+
+def test_a_history_in_time_is_saved_and_asked_for_more(whole, tmp_path):
+    mesh, history = whole
+    history.save(tmp_path / "a")
+    again = am.TransientHistory.load(tmp_path / "a", mesh.domain)
+    assert_same(again, history)
+    assert again.seconds == history.seconds
+    options = {"target_vertices": 300, "fields": ["u"]}
+    with pytest.raises(am.FormatError, match="there is a history in this folder"):
+        transient_loop(Diffusing(-1), beginning, mesh, TIMES, save=tmp_path / "a", **options)
+    done = transient_loop(
+        lambda *a: pytest.fail("advanced"),
+        beginning,
+        mesh,
+        TIMES,
+        resume=again,
+        **options,
+    )
+    assert done is again
+    more = transient_loop(Diffusing(-1), beginning, mesh, TIMES, resume=again, sweeps=4, **options)
+    assert len(more.sweeps) == 4
+    with pytest.raises(ValueError, match="not those of times"):
+        transient_loop(Diffusing(-1), beginning, mesh, [0, 1], resume=history, **options)
+    with pytest.raises(ValueError, match="not those of times"):
+        transient_loop(Diffusing(-1), beginning, mesh, [0, 0.5, 1, 2], resume=history, **options)
+    other = am.generate(DOMAIN, 0.3)
+    with pytest.raises(ValueError, match="began with another mesh"):
+        transient_loop(Diffusing(-1), beginning, other, TIMES, resume=history, **options)
+
+
+def test_damaged_histories_in_time_are_named(whole, tmp_path):
+    _, history = whole
+    with pytest.raises(am.FormatError, match="no history in time here"):
+        am.TransientHistory.load(tmp_path)
+    history.save(tmp_path)
+    file = tmp_path / "sweep_01_interval_0001.npz"
+    content = file.read_bytes()
+    file.write_bytes(content[:100])
+    with pytest.raises(am.FormatError, match=r"sweep_01_interval_0001\.npz: is damaged"):
+        am.TransientHistory.load(tmp_path)
+    file.unlink()
+    with pytest.raises(am.FormatError, match=r"sweep_01_interval_0001\.npz is missing"):
+        am.TransientHistory.load(tmp_path)
+    (tmp_path / "transient.json").write_text("[]")
+    with pytest.raises(am.FormatError, match="is damaged"):
+        am.TransientHistory.load(tmp_path)
+
+
+def test_errors_of_the_callback_and_of_initial():
+    mesh = am.generate(DOMAIN, 0.3)
+
+    def refuse(sweep, number, interval):
+        raise RuntimeError("no")
+
+    with pytest.raises(TransientError, match="sweep 0, interval 0, callback: Runtime") as caught:
+        transient_loop(
+            known, lambda m: front(m, 0), mesh, TIMES, target_vertices=100, callback=refuse
+        )
+    assert len(caught.value.history.intervals) == 1  # it was complete
+    with pytest.raises(TransientError, match="interval 0, initial: TypeError: initial returned"):
+        transient_loop(known, lambda m: None, mesh, TIMES, target_vertices=100)
+    with pytest.raises(TypeError, match="advance must be a function"):
+        transient_loop(3, lambda m: None, mesh, TIMES, target_vertices=100)
