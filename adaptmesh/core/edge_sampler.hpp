@@ -55,6 +55,13 @@ class EdgeSampler {
     EdgeSampler(double longest_chord, double longest_edge, double uncut_below)
         : longest_chord_(longest_chord), longest_edge_(longest_edge), uncut_below_(uncut_below) {}
 
+    // Forgets all edges, but keeps their memory.
+    void clear() {
+        edges_.clear(), lengths_.clear();
+        chords_.clear(), asked_.clear();
+        pieces_.clear(), first_.clear();
+    }
+
     void reserve(std::size_t n) { edges_.reserve(n), chords_.reserve(n), lengths_.reserve(n); }
 
     void add(Point a, const Tensor& metric_a, Point b, const Tensor& metric_b) {
@@ -82,29 +89,17 @@ class EdgeSampler {
     // The metrics at the wanted points, in their order.
     template <typename TensorAt>
     void feed(TensorAt&& tensor_at) {
-        // Most chords are trusted and most edges not to be cut: halves are not kept, but made anew
-        // for the few that are.
-        std::vector<Verdict> verdicts(chords_.size());
-        std::vector<double> estimates = lengths_;
-        for (std::size_t i = 0; i < chords_.size(); ++i) {
-            const Halved h = halve(chords_[i], tensor_at(i));
-            verdicts[i] = {h.length, h.is_trusted};
-            estimates[chords_[i].edge] += h.length;
-        }
-        std::vector<Chord> asked;
-        asked.swap(chords_);
-        for (std::size_t i = 0; i < asked.size(); ++i) {
-            const Index edge = asked[i].edge;
-            const Verdict& verdict = verdicts[i];
-            const bool measured_enough = verdict.is_trusted || estimates[edge] > longest_edge_;
-            if (measured_enough) {
-                lengths_[edge] += verdict.length;
-                if (asked[i].depth == 0 && verdict.length < uncut_below_) continue;
+        asked_.swap(chords_);
+        chords_.clear();
+        for (std::size_t i = 0; i < asked_.size();) {
+            const Index edge = asked_[i].edge;
+            double estimate = lengths_[edge];
+            halves_.clear();
+            for (; i < asked_.size() && asked_[i].edge == edge; ++i) {  // its chords are in a row
+                halves_.push_back(halve(asked_[i], tensor_at(i)));
+                estimate += halves_.back().length;
             }
-            const Halved h = halve(asked[i], tensor_at(i));
-            auto& kept = measured_enough ? pieces_ : chords_;
-            kept.push_back(h.left);
-            kept.push_back(h.right);
+            for (const Halved& h : halves_) settle(h, estimate);
         }
         if (chords_.empty()) finish();
     }
@@ -175,10 +170,6 @@ class EdgeSampler {
         double length;
         bool is_trusted;
     };
-    struct Verdict {  // on a chord: the length of its halves, and whether to trust that
-        double length;
-        bool is_trusted;
-    };
 
     Chord chord(Index edge, int depth, const Station& from, const Station& to) const {
         const Point v = edges_[edge].vector;
@@ -199,6 +190,20 @@ class EdgeSampler {
                 (agree && halves <= longest) || halves <= SHORTEST_CHORD || c.depth >= DEEPEST};
     }
 
+    // Keeps the halves, or has them asked about; `estimate` is what the edge is now thought to be.
+    void settle(const Halved& h, double estimate) {
+        const Index edge = h.left.edge;
+        const bool measured_enough = h.is_trusted || estimate > longest_edge_;
+        if (measured_enough) {
+            lengths_[edge] += h.length;
+            // Most edges are trusted at once, and will not be cut.
+            if (h.left.depth == 1 && h.length < uncut_below_) return;
+        }
+        auto& kept = measured_enough ? pieces_ : chords_;
+        kept.push_back(h.left);
+        kept.push_back(h.right);
+    }
+
     Point point(Index edge, double t) const {
         const Edge& e = edges_[edge];
         return {e.from.x + t * e.vector.x, e.from.y + t * e.vector.y};
@@ -211,9 +216,9 @@ class EdgeSampler {
         for (const Chord& p : pieces_) ++first_[p.edge + 1];
         for (std::size_t e = 0; e < edges_.size(); ++e) first_[e + 1] += first_[e];
         std::vector<Index> free(first_.begin(), first_.end() - 1);
-        std::vector<Chord> sorted(pieces_.size());
-        for (const Chord& p : pieces_) sorted[free[p.edge]++] = p;
-        pieces_.swap(sorted);
+        asked_.resize(pieces_.size());
+        for (const Chord& p : pieces_) asked_[free[p.edge]++] = p;
+        pieces_.swap(asked_);
         for (std::size_t e = 0; e < edges_.size(); ++e) {
             std::sort(pieces_.begin() + first_[e], pieces_.begin() + first_[e + 1],
                       [](const Chord& p, const Chord& q) { return p.from.t < q.from.t; });
@@ -238,10 +243,12 @@ class EdgeSampler {
     double longest_edge_;
     double uncut_below_;
     std::vector<Edge> edges_;
-    std::vector<Chord> chords_;    // asked about
+    std::vector<Chord> chords_;    // to be asked about
+    std::vector<Chord> asked_;     // those of the last round; scratch at the end
     std::vector<Chord> pieces_;    // trusted
     std::vector<Index> first_;     // of each edge, in pieces_
     std::vector<double> lengths_;  // of what is trusted
+    std::vector<Halved> halves_;   // of the edge at hand
 };
 
 }  // namespace adaptmesh

@@ -46,7 +46,7 @@ class Settler {
             if (is_centre[v]) add_ball(v);
         }
         sort_out(unmeasured_);
-        sampler_ = new_sampler();
+        sampler_.clear();
         for (auto [a, b] : unmeasured_) add_edge(mesh_.vertices[a], mesh_.vertices[b]);
         return sites_.size();
     }
@@ -87,7 +87,7 @@ class Settler {
     // The metrics at the wanted points; then the spokes of the proposals want to be measured.
     template <typename TensorAt>
     void set_kernels(TensorAt&& tensor_at) {
-        sampler_ = new_sampler();
+        sampler_.clear();
         std::size_t next_kernel = 0;
         for (Site& site : sites_) {
             for (Star& s : site.others) {
@@ -137,8 +137,6 @@ class Settler {
     static constexpr int DIRECTIONS = 4;
     static constexpr double TWO_PI = 6.283185307179586;
     static constexpr std::size_t MOST_COLLAPSES = 4;
-
-    static EdgeSampler new_sampler() { return EdgeSampler(LONGEST_CHORD, LONGEST_EDGE, 0.0); }
 
     template <typename T>
     static void sort_out(std::vector<T>& items) {
@@ -340,7 +338,7 @@ class Settler {
     Measures measures_;
     std::vector<Site> sites_;
     std::vector<std::pair<Index, Index>> unmeasured_;
-    EdgeSampler sampler_ = new_sampler();
+    EdgeSampler sampler_{LONGEST_CHORD, LONGEST_EDGE, 0.0};
 };
 
 }  // namespace adaptmesh
