@@ -44,11 +44,11 @@ def domain_of_mesh(mesh: Mesh, corner_angle: float | None = None) -> Domain:
     tolerance = STRAIGHT * float(np.ptp(mesh.points, axis=0).max())
     beside = regions_beside(mesh.triangles, mesh.regions, edges, len(mesh.points))
     for chain, tag in _chains(edges, tags, np.sort(beside, axis=1)):
-        corners = _corners(mesh.points, chain, tolerance)
+        ring = chain[0] == chain[-1] and degree[chain[0]] == 2
+        corners = _corners(mesh.points, chain, ring, tolerance)
         segments += list(itertools.pairwise(corners))
         segment_tags += [tag] * (len(corners) - 1)
         if corner_angle is not None:
-            ring = chain[0] == chain[-1] and degree[chain[0]] == 2
             smooth = smooth_curves(mesh.points, chain, corners, corner_angle, ring)
             curves += smooth
             curve_tags += [tag] * len(smooth)
@@ -146,10 +146,12 @@ def _chains(edges: Ints, tags: Ints, sides: Ints) -> Iterator[tuple[list[int], i
             yield chain, kind[first][0]
 
 
-def _corners(points: Floats, chain: list[int], tolerance: float) -> list[int]:
-    """The vertices of a chain that a polyline within the tolerance needs (Douglas and Peucker)."""
-    closed = chain[0] == chain[-1]
-    if closed:  # open it at an extreme point, which is a corner
+def _corners(points: Floats, chain: list[int], ring: bool, tolerance: float) -> list[int]:
+    """The vertices of a chain that a polyline within the tolerance needs (Douglas and Peucker).
+
+    Its ends are among them, unless it is a ring that nothing else meets.
+    """
+    if ring:  # open it at an extreme point, which is a corner
         ring = chain[:-1]
         k = min(range(len(ring)), key=lambda i: tuple(points[ring[i]]))
         chain = [*ring[k:], *ring[: k + 1]]
@@ -182,14 +184,13 @@ def _hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    filled, *_ = _core.triangulate(points, segments, np.empty((0, 2)), np.empty((0, 2)), False)
+    none = np.empty((0, 2))
+    filled, _, pieces, _, _ = _core.triangulate(points, segments, none, none, False)
     halves, owner = _half_edges(filled)
     keys = edge_keys(halves[:, 0], halves[:, 1], len(points))
     order = np.argsort(keys, kind="stable")
     same = np.flatnonzero(keys[order][:-1] == keys[order][1:])
-    open_ = same[
-        ~np.isin(keys[order][same], edge_keys(segments[:, 0], segments[:, 1], len(points)))
-    ]
+    open_ = same[~np.isin(keys[order][same], edge_keys(pieces[:, 0], pieces[:, 1], len(points)))]
     links = owner[order][open_], owner[order][open_ + 1]
     graph = coo_array((np.ones(len(open_)), links), shape=(len(filled), len(filled)))
     _, part = connected_components(graph, directed=False)

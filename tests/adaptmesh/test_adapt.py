@@ -87,6 +87,21 @@ def test_nested_holes_and_islands_are_found_again():
     assert again.area == pytest.approx(domain.area)
 
 
+def test_holes_that_touch_in_the_middle_of_a_side_are_found_again():
+    """The first hole begins and ends where the second touches its side: there stays a corner."""
+    square = [(0, 0), (4, 0), (4, 4), (0, 4)]
+    holes = [[(1, 1), (3, 1), (3, 2), (1, 2)], [(2, 2), (2.5, 2.5), (2, 3), (1.5, 2.5)]]
+    domain, _ = am.repair([square, *holes])
+    mesh = am.generate(domain, 0.9)
+    again = am.Domain.of_mesh(am.Mesh(mesh.points, mesh.triangles))
+    assert again.area == pytest.approx(13.5, rel=1e-14)
+    # whichever vertex the walk along the outline begins at
+    for shift in range(len(mesh.points)):
+        number = (np.arange(len(mesh.points)) + shift) % len(mesh.points)
+        turned = am.Mesh(mesh.points[np.argsort(number)], number[mesh.triangles])
+        assert am.Domain.of_mesh(turned).area == pytest.approx(13.5, rel=1e-14)
+
+
 def test_wrong_number_of_values(plate):
     mesh = am.generate(plate, 0.3)
     with pytest.raises(am.MetricError):
