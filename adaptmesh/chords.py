@@ -128,6 +128,8 @@ class _Refinement:
             n += inner
         self.points = np.concatenate(points)
         self.extent = max(self.extent, float(np.ptp(self.points, axis=0).max()))
+        in_last_place = np.finfo(float).eps * float(np.abs(self.points).max())
+        self.rounding = max(ROUNDING * self.extent, 4 * in_last_place)
         self._look(np.concatenate(run), np.concatenate(u), np.concatenate(ends))
 
     def _look(self, run: Index, u: Floats, ends: Index) -> None:
@@ -178,11 +180,11 @@ class _Refinement:
         return np.unique(np.concatenate([self.beside[0], self.crossed[0]]))
 
     def _beside_vertices(self) -> tuple[Index, Index]:
-        """Chords, and the points that are nearer to the curve than to other side of the chord."""
+        """Chords, and the points between them and their curves, or on them but for rounding."""
         import shapely
 
         tree = shapely.STRtree(shapely.points(self._all_points()))
-        chord, vertex = tree.query(self.hulls, predicate="intersects")
+        chord, vertex = tree.query(self.hulls, predicate="dwithin", distance=self.rounding)
         foreign = (self.ends[chord] != vertex[:, None]).all(axis=1)
         return chord[foreign], vertex[foreign]
 
@@ -207,7 +209,7 @@ class _Refinement:
     def check_can_be_halved(self, bad: Index, most: int) -> None:
         """Refuse what more chords do not mend."""
         stuck = self.u[bad, 1] - self.u[bad, 0] < SHORTEST * np.maximum(1, self.u[bad, 1])
-        stuck |= (self.height[bad] <= ROUNDING * self.extent) & ~(self.turn[bad] > 1e-3)
+        stuck |= (self.height[bad] <= self.rounding) & ~(self.turn[bad] > 1e-3)
         chord, vertex = self.beside
         same = self.points[self.ends[chord]] == self._all_points()[vertex][:, None]
         stuck |= np.isin(bad, chord[same.all(axis=2).any(axis=1)])
@@ -234,8 +236,11 @@ class _Refinement:
             )
         for v in self.beside[1][self.beside[0] == k].tolist():
             x, y = self._all_points()[v]
+            owner = self._owner(v)
+            if owner == f"the point of {me}":
+                return f"{me} meets itself at ({x:.10g}, {y:.10g}): cut it there (Curve.part)"
             return (
-                f"{me} passes {self._owner(v)}({x:.10g}, {y:.10g}) nearer than chords can tell "
+                f"{me} passes {owner} at ({x:.10g}, {y:.10g}) nearer than chords can tell "
                 "apart: where curves meet, cut them both there (Curve.part), or move them apart"
             )
         return (
@@ -247,12 +252,12 @@ class _Refinement:
         """Whose point this is, in words."""
         on = np.flatnonzero((self.ends == v).any(axis=1))
         if len(on):
-            return f"the point of {self.name(int(on[0]))} at "
+            return f"the point of {self.name(int(on[0]))}"
         on = np.flatnonzero((self.around.lines == v).any(axis=1))
         if len(on):
             curve = int(self.around.line_curves[on[0]])
-            return f"the end of {name_of_curve(self.around.curves, curve)} at "
-        return "the point "
+            return f"the end of {name_of_curve(self.around.curves, curve)}"
+        return "the point"
 
     def halve(self, bad: Index) -> None:
         middle = 0.5 * (self.u[bad, 0] + self.u[bad, 1])

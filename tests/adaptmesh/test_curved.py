@@ -303,3 +303,12 @@ def test_random_curves_are_meshed_or_refused_with_the_place(seed):
         return
     mesh = am.generate(domain, scale * 10.0 ** rng.uniform(-1, 0.5))
     mesh.validate().raise_if_invalid()
+
+
+@pytest.mark.parametrize("shift", np.random.default_rng(1).uniform(-1, 1, (20, 2)).tolist())
+def test_circles_that_touch_but_for_rounding_are_refused(shift):
+    """Where rounding puts the two a unit in the last place apart as well."""
+    x, y = shift
+    circles = [Circle((x, y), 2), Circle((x - 0.8, y), 0.8), Circle((x + 0.8, y), 0.8)]
+    with pytest.raises(am.DomainError, match=r"(cross or touch at|passes the point of) .*\("):
+        am.Domain.from_curves(circles)
