@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "adaptmesh/core/metric_mesh.hpp"
+#include "adaptmesh/core/proper_triangle.hpp"
 #include "adaptmesh/core/swap.hpp"
 
 namespace adaptmesh {
@@ -29,7 +30,7 @@ class Recutter {
     explicit Recutter(MetricMesh& mesh) : mesh_(mesh) {}
 
     // `stretch` begins and ends with the vertices that stay; the others are old. The cuts are in
-    // order. Cuts and removals that would make a triangle that is not positive are left out.
+    // order. Cuts and removals that would make a triangle that is none are left out.
     void recut(std::vector<Stop>& stretch, const std::vector<Vertex>& cuts, const double* places) {
         bool complete = true;
         for (std::size_t i = 0; i < cuts.size(); ++i)
@@ -79,7 +80,7 @@ class Recutter {
             const Triangle& T = mesh_.triangle(place.triangle);
             const Index p = T.v[next(place.slot)], q = T.v[prev(place.slot)];
             if (p != to && q != to) {
-                if (!mesh_.is_positive(to, p, q)) return false;
+                if (!is_proper_triangle(mesh_.at(to), mesh_.at(p), mesh_.at(q))) return false;
             } else if (is_ear(T, place.slot, p == to)) {
                 return false;
             }

@@ -236,7 +236,7 @@ class Settler {
     // --- proposals ---------------------------------------------------------------------------
 
     void propose(Site& site, const Star& star) {
-        if (StarView(site.polygon, star).is_positive(mesh_)) site.others.push_back(star);
+        if (StarView(site.polygon, star).is_proper(mesh_)) site.others.push_back(star);
     }
 
     void propose_at(Site& site, Point at) {

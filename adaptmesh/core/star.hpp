@@ -19,6 +19,7 @@
 #include "adaptmesh/core/edge_sampler.hpp"
 #include "adaptmesh/core/edge_table.hpp"
 #include "adaptmesh/core/metric_mesh.hpp"
+#include "adaptmesh/core/proper_triangle.hpp"
 
 namespace adaptmesh {
 
@@ -108,9 +109,10 @@ class StarView {
     int first_spoke() const { return is_inside_ ? 0 : 1; }
     int end_of_spokes() const { return is_inside_ ? size() : size() - 2; }
 
-    bool is_positive(const MetricMesh& mesh) const {
+    bool is_proper(const MetricMesh& mesh) const {
         for (int i = 0; i < triangle_count(); ++i) {
-            if (orient2d(star_.kernel.at, mesh.at(rim(i)), mesh.at(rim(i + 1))) <= 0) return false;
+            if (!is_proper_triangle(star_.kernel.at, mesh.at(rim(i)), mesh.at(rim(i + 1))))
+                return false;
         }
         return true;
     }

@@ -24,6 +24,13 @@ def meshed(domain, size, area):
     return mesh
 
 
+def flattest(mesh):
+    """The least height of a triangle, as a share of its longest side."""
+    p = mesh.points[mesh.triangles]
+    longest = np.hypot(*(p - np.roll(p, 1, axis=1)).transpose(2, 0, 1)).max(axis=1)
+    return (2 * mesh.areas / longest**2).min()
+
+
 def box(x0, y0, x1, y1):
     return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
 
@@ -114,6 +121,39 @@ def test_a_ring_around_a_ring_a_hair_apart(gap):
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     domain = am.Domain.polygon(circle, [(1 - gap) * circle])
     meshed(domain, "fine", domain.area)
+
+
+# Cuts of a straight side are off it by rounding, so that a triangle between three of them can be
+# positive: two domains, found among thousands, where that happened.
+
+
+def test_no_triangle_has_its_corners_on_one_side_of_a_strip():
+    """Its edge along the side is unit, and the one across the strip is not."""
+    strip = [
+        (-0.2936804275838627, 0.5076697659779097),
+        (-0.15664026192924696, 0.5076697659779097),
+        (-0.2936794275838627, 0.5076707659779097),
+        (-0.35872330117911355, 1.5076697659779097),
+    ]
+
+    def graded(x):
+        return 1 / 75 + 0.3 * np.hypot(*(x - strip[1]).T)
+
+    mesh = am.generate(am.Domain.polygon(strip), graded)
+    mesh.validate().raise_if_invalid()
+    assert flattest(mesh) > 1e-9
+
+
+def test_no_triangle_has_its_corners_on_one_side_when_a_mesh_is_made_coarser():
+    x = [0.5960642951203845, 0.5970642951203845, 0.5980642951203845]
+    y = [0.011052516871096874, 0.012052516871096874, 0.013052516871096874]
+    points = [(a, b) for a in x for b in y]
+    pairs = [(3 * i + j, 3 * i + j + 1) for i in range(3) for j in range(2)]
+    pairs += [(3 * i + j, 3 * i + j + 3) for i in range(2) for j in range(3)]
+    mesh = am.generate(am.Domain(points, pairs), 0.002 / 3)
+    coarse = am.adapt(mesh, 0.002, keep=True)
+    coarse.validate().raise_if_invalid()
+    assert flattest(coarse) > 0.1
 
 
 def test_boundaries_nearer_than_the_tolerance_are_refused_as_polygons_and_joined_by_repair():
