@@ -44,12 +44,12 @@ def domain_of_mesh(mesh: Mesh, corner_angle: float | None = None) -> Domain:
     tolerance = STRAIGHT * float(np.ptp(mesh.points, axis=0).max())
     beside = regions_beside(mesh.triangles, mesh.regions, edges, len(mesh.points))
     for chain, tag in _chains(edges, tags, np.sort(beside, axis=1)):
-        ring = chain[0] == chain[-1] and degree[chain[0]] == 2
-        corners = _corners(mesh.points, chain, ring, tolerance)
+        is_ring = chain[0] == chain[-1] and degree[chain[0]] == 2
+        corners = _corners(mesh.points, chain, is_ring, tolerance)
         segments += list(itertools.pairwise(corners))
         segment_tags += [tag] * (len(corners) - 1)
         if corner_angle is not None:
-            smooth = smooth_curves(mesh.points, chain, corners, corner_angle, ring)
+            smooth = smooth_curves(mesh.points, chain, corners, corner_angle, is_ring)
             curves += smooth
             curve_tags += [tag] * len(smooth)
 
@@ -146,12 +146,12 @@ def _chains(edges: Ints, tags: Ints, sides: Ints) -> Iterator[tuple[list[int], i
             yield chain, kind[first][0]
 
 
-def _corners(points: Floats, chain: list[int], ring: bool, tolerance: float) -> list[int]:
+def _corners(points: Floats, chain: list[int], is_ring: bool, tolerance: float) -> list[int]:
     """The vertices of a chain that a polyline within the tolerance needs (Douglas and Peucker).
 
     Its ends are among them, unless it is a ring that nothing else meets.
     """
-    if ring:  # open it at an extreme point, which is a corner
+    if is_ring:  # open it at an extreme point, which is a corner
         ring = chain[:-1]
         k = min(range(len(ring)), key=lambda i: tuple(points[ring[i]]))
         chain = [*ring[k:], *ring[: k + 1]]
