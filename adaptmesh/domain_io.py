@@ -13,6 +13,7 @@ from .drawings import Drawing, read_dxf, read_svg
 from .errors import DomainError
 from .geo import read_geo
 from .geojson import read_geojson
+from .io.located import located
 from .polyfile import read_poly
 from .raw import Outline, Shape
 from .shp import read_shapefile
@@ -67,23 +68,18 @@ def read_domain(path: str | os.PathLike[str]) -> Domain:
     repair : takes the path of a file that is not clean.
     """
     raw = read_raw(path)
-    try:
+    with located(path, DomainError):
         if isinstance(raw, Domain):
             return raw
         return domain_of_shapes(raw) if isinstance(raw, list) else raw.domain()
-    except DomainError as error:
-        raise DomainError(f"{path}: {error}") from error
 
 
 def read_raw(path: str | os.PathLike[str]) -> Domain | Outline | Drawing | list[Shape]:
     """What is in a file that `read_domain` can read, before it is checked."""
     path = Path(path)
-    suffix = path.suffix.lower()
-    try:
-        reader = _READERS.get(suffix)
-        return _domain_of_mesh_file(path) if reader is None else reader(path)
-    except DomainError as error:
-        raise DomainError(f"{path}: {error}") from error
+    reader = _READERS.get(path.suffix.lower(), _domain_of_mesh_file)
+    with located(path, DomainError):
+        return reader(path)
 
 
 def _domain_of_mesh_file(path: Path) -> Domain:

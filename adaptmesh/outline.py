@@ -184,8 +184,15 @@ def _hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    none = np.empty((0, 2))
-    filled, _, pieces, _, _ = _core.triangulate(points, segments, none, none, False)
+    nowhere = np.empty((0, 2))
+    try:
+        filled, _, pieces, _, _ = _core.triangulate(points, segments, nowhere, nowhere, False)
+    except _core.Fault as fault:
+        *_, x, y = fault.args
+        raise DomainError(
+            f"the mesh lies over itself near ({x:.17g}, {y:.17g}), so it covers no domain; its "
+            "validate() lists what is wrong"
+        ) from None
     halves, owner = _half_edges(filled)
     keys = edge_keys(halves[:, 0], halves[:, 1], len(points))
     order = np.argsort(keys, kind="stable")

@@ -16,6 +16,7 @@ Everything after ``#`` is a comment. If the number of points is 0 they are in th
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Iterable, Iterator
@@ -51,9 +52,12 @@ class _Lines:
         if len(words) < least:
             raise self.error(f"{what} needs at least {least} numbers, not {' '.join(words)!r}")
         try:
-            return [float(word) for word in words]
-        except ValueError as error:
-            raise self.error(f"{what} should be numbers, not {' '.join(words)!r}") from error
+            numbers = [float(word) for word in words]
+        except ValueError:
+            numbers = [math.nan]
+        if not all(map(math.isfinite, numbers)):
+            raise self.error(f"{what} should be finite numbers, not {' '.join(words)!r}")
+        return numbers
 
     def next_or_none(self) -> list[str] | None:
         self._line, words = next(self._numbered, (self._line, None))

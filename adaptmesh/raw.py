@@ -143,7 +143,7 @@ class Shape:
         points = (point for part in parts for ring in part for point in ring)
         try:
             return shape.with_heights([point[2] for point in points if len(point) > 2])
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, OverflowError) as error:
             raise FormatError(f"{label} cannot be read: a height in it is {error}") from None
 
     def with_heights(self, z: ArrayLike) -> Shape:
@@ -173,10 +173,10 @@ def _ring(points: Any, label: str) -> Floats:
     """The first two coordinates of the points of a ring."""
     try:
         out = np.asarray(points, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         try:  # some of the points may have a height
             out = np.array([point[:2] for point in points], dtype=np.float64)
-        except (TypeError, ValueError, IndexError) as error:
+        except (TypeError, ValueError, IndexError, OverflowError) as error:
             raise FormatError(f"{label} cannot be read: {error}") from None
     if out.size == 0:
         return np.empty((0, 2))

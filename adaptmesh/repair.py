@@ -12,7 +12,9 @@ from .arrangement import Repair, Repairs, used_tolerance
 from .coverage import repaired_domain_of_shapes
 from .domain import Domain
 from .drawings import Drawing
+from .errors import DomainError
 from .geojson import shapes_of_geojson
+from .io.located import located
 from .raw import Outline, Shape
 from .repair_segments import repaired_domain_of_segments
 
@@ -85,12 +87,21 @@ def repair(dirty: Any, tolerance: float | None = None) -> tuple[Domain, Repairs]
     if isinstance(dirty, (str, os.PathLike)):
         from .domain_io import read_raw
 
-        dirty = read_raw(dirty)
+        raw = read_raw(dirty)
+        with located(dirty, DomainError):
+            return _repaired(raw, tolerance)
+    return _repaired(dirty, tolerance)
+
+
+def _repaired(dirty: Any, tolerance: float | None) -> tuple[Domain, Repairs]:
+    """As `repair`, without paths."""
     if isinstance(dirty, Drawing) and not dirty.is_straight:
         dirty = dirty.domain()
     if isinstance(dirty, Drawing):
-        tolerance = dirty.join_tolerance if tolerance is None else tolerance
-        dirty = dirty.outline()
+        outline = dirty.outline()
+        return repaired_domain_of_segments(
+            outline, dirty.join_tolerance if tolerance is None else tolerance
+        )
     if isinstance(dirty, Domain):
         if dirty.curved.runs:
             return dirty, Repairs((), used_tolerance(dirty.points, tolerance))

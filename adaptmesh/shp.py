@@ -7,36 +7,35 @@ The attribute ``name``, in any case, names the region of each polygon; without a
 from __future__ import annotations
 
 import struct
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 from .errors import DomainError, FormatError
 from .io.files import read_bytes
+from .io.located import refusing
 from .raw import Shape
 
 _HEADER = 100  # bytes; at 24 the length of the file, in units of 2 bytes
-_OF_DAMAGE = (
-    struct.error, OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError,
-)  # fmt: skip
-"""What pyshp raises where it does not look before it reads."""
 
 
 def read_shapefile(path: Path) -> list[Shape]:
     """The polygons of a shapefile, unchecked; a `FormatError` names the file."""
     pyshp = _import_pyshp()
-    _refuse_cut_short(path)
-    try:
-        with pyshp.Reader(str(path)) as reader:
-            read = [
-                (None, ())
-                if shape.shapeType == pyshp.NULL
-                else (shape.__geo_interface__, getattr(shape, "z", ()))
-                for shape in reader.iterShapes()
-            ]
-            has_records = any(path.with_suffix(s).exists() for s in (".dbf", ".DBF"))
-            names = _names(reader) if has_records else []
-    except (pyshp.ShapefileException, pyshp.GeoJSON_Error, *_OF_DAMAGE) as error:
-        raise FormatError(f"{path} is damaged, or no shapefile: {error}") from None
+    files = _contents(path)
+    with (
+        refusing(
+            f"{path} is damaged, or no shapefile", pyshp.ShapefileException, pyshp.GeoJSON_Error
+        ),
+        pyshp.Reader(**files) as reader,
+    ):
+        read = [
+            (None, ())
+            if shape.shapeType == pyshp.NULL
+            else (shape.__geo_interface__, getattr(shape, "z", ()))
+            for shape in reader.iterShapes()
+        ]
+        names = _names(reader) if "dbf" in files else []
     if not read:
         raise DomainError("it has no shapes: there is nothing to mesh")
     if names and len(names) != len(read):
@@ -61,7 +60,12 @@ def _names(reader: Any) -> list[str | None]:
     return [None if value in (None, "") else str(value) for value in values]
 
 
-def _refuse_cut_short(path: Path) -> None:
+def _contents(path: Path) -> dict[str, BytesIO]:
+    """What the file and those beside it hold.
+
+    Of files on disk pyshp reads as much as they say they have, which may be more than there is
+    memory for.
+    """
     data = read_bytes(path)
     if len(data) < _HEADER or struct.unpack(">i", data[:4]) != (9994,):
         raise FormatError(f"{path} does not start with the header of a shapefile")
@@ -70,6 +74,13 @@ def _refuse_cut_short(path: Path) -> None:
         raise FormatError(
             f"{path} has {len(data)} bytes, not {length} as it says itself: is the file complete?"
         )
+    files = {"shp": BytesIO(data)}
+    for kind in ("shx", "dbf", "cpg"):
+        beside = [path.with_suffix(f".{suffix}") for suffix in (kind, kind.upper())]
+        there = next((file for file in beside if file.exists()), None)
+        if there is not None:
+            files[kind] = BytesIO(read_bytes(there))
+    return files
 
 
 def _import_pyshp() -> Any:

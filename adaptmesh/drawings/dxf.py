@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..curves import Arc, BSpline, Circle, Curve, EllipticArc, Line
-from ..errors import DomainError, FormatError
+from ..errors import AdaptmeshError, FormatError
 from ..io.files import read_bytes
+from ..io.located import located, refusing
 from .drawing import Drawing
 
 Floats = NDArray[np.float64]
@@ -34,36 +35,25 @@ PASSED_OVER = frozenset(_ANNOTATION.split())
 
 def read_dxf(path: Path) -> Drawing:
     """The curves of the model space of a DXF file, each with the name of its layer."""
-    document = _opened(path)
-    from ezdxf.disassemble import recursive_decompose
-
+    ezdxf = _import_ezdxf()
     drawing = Drawing(path)
-    hidden = {layer.dxf.name for layer in document.layers if layer.is_off() or layer.is_frozen()}
-    for entity in recursive_decompose(document.modelspace()):
-        if entity.dxftype() in PASSED_OVER or entity.dxf.layer in hidden:
-            continue
-        try:
-            for curve in _curves(entity):
-                drawing.add(curve, entity.dxf.layer)
-        except DomainError as error:
-            raise DomainError(f"{_words(entity)}: {error}") from None
-        except FormatError as error:
-            raise FormatError(f"{path}: {_words(entity)} {error}") from None
+    with refusing(f"{path} is damaged, or no DXF file", ezdxf.DXFError), located(path):
+        for entity in _entities(ezdxf, path):
+            with located(_words(entity), AdaptmeshError), refusing("is damaged"):
+                for curve in _curves(entity):
+                    drawing.add(curve, entity.dxf.layer)
     return drawing
 
 
-def _opened(path: Path) -> Any:
-    try:
-        import ezdxf
-        from ezdxf.lldxf.const import DXFError
-    except ImportError:
-        raise FormatError('DXF is read by ezdxf: pip install "adaptmesh-metric[files]"') from None
+def _entities(ezdxf: Any, path: Path) -> Iterator[Any]:
+    """What is drawn in the model space, blocks taken apart."""
     if not read_bytes(path).rstrip(b"\0\r\n ").endswith(b"EOF"):  # ezdxf takes what there is
-        raise FormatError(f"{path} does not end with EOF: it is cut short, or no DXF file")
-    try:
-        return ezdxf.readfile(path)
-    except (DXFError, OSError, ValueError, TypeError, LookupError, AttributeError) as error:
-        raise FormatError(f"{path} is damaged, or no DXF file: {error}") from None
+        raise FormatError("does not end with EOF: it is cut short, or no DXF file")
+    document = ezdxf.readfile(path)
+    hidden = {layer.dxf.name for layer in document.layers if layer.is_off() or layer.is_frozen()}
+    for entity in ezdxf.disassemble.recursive_decompose(document.modelspace()):
+        if entity.dxftype() not in PASSED_OVER and entity.dxf.layer not in hidden:
+            yield entity
 
 
 def _words(entity: Any) -> str:
@@ -175,3 +165,12 @@ _READERS = {
     "POLYLINE": _polyline,
     "SPLINE": _spline,
 }
+
+
+def _import_ezdxf() -> Any:
+    try:
+        import ezdxf
+        import ezdxf.disassemble
+    except ImportError:
+        raise FormatError('DXF is read by ezdxf: pip install "adaptmesh-metric[files]"') from None
+    return ezdxf

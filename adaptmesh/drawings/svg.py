@@ -10,6 +10,7 @@ only styles or clips.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,10 @@ from numpy.typing import NDArray
 
 from ..curves import Bezier, Curve, Line
 from ..errors import DomainError, FormatError
+from ..io.files import read_bytes
+from ..io.located import located, refusing
 from .drawing import Drawing, affine_arc
+from .svg_syntax import check_syntax
 
 Floats = NDArray[np.float64]
 
@@ -30,44 +34,32 @@ def read_svg(path: Path) -> Drawing:
     """The curves of an SVG file; each bears the label (as Inkscape gives it) or id of its shape."""
     svg = _import_svgelements()
     drawing = Drawing(path)
-    for shape in _parsed(svg, path).elements():
-        if not isinstance(shape, svg.Shape):
-            continue
-        name = _name_of(shape)
-        place = _Placement(shape.transform)
-        for segment in shape.segments(transformed=False):
-            try:
-                curve = _curve(svg, segment, place)
-            except DomainError as error:
-                raise DomainError(f"shape {name or type(shape).__name__!r}: {error}") from None
-            if curve is not None:
-                drawing.add(curve, name)
+    with refusing(f"{path} is damaged, or no SVG"), located(path):
+        for shape in _shapes(svg, read_bytes(path)):
+            name = _name_of(shape)
+            with located(f"shape {name or type(shape).__name__!r}", DomainError):
+                place = _Placement(shape.transform)
+                for segment in shape.segments(transformed=False):
+                    curve = _curve(svg, segment, place)
+                    if curve is not None:
+                        drawing.add(curve, name)
     return drawing
 
 
-def _parsed(svg: Any, path: Path) -> Any:
-    from xml.etree.ElementTree import ParseError
+def _shapes(svg: Any, data: bytes) -> Iterator[Any]:
+    """What the file draws; all of it is looked at before the first is handed out."""
+    from xml.etree import ElementTree
 
     try:
-        root = svg.SVG.parse(str(path), reify=False)
-    except FileNotFoundError:
-        raise FormatError(f"{path}: no such file") from None
-    except OSError as error:
-        raise FormatError(f"{path} cannot be read: {error.strerror or error}") from None
-    except ParseError as error:
-        raise FormatError(f"{path} is cut short or not XML: {error}") from None
-    except (
-        ValueError,
-        TypeError,
-        KeyError,
-        IndexError,
-        AttributeError,
-        ZeroDivisionError,
-    ) as error:
-        raise FormatError(f"{path} is no SVG that svgelements can read: {error}") from None
+        check_syntax(ElementTree.fromstring(data))
+    except ElementTree.ParseError as error:
+        raise FormatError(f"it is cut short or not XML: {error}") from None
+    root = svg.SVG.parse(BytesIO(data), reify=False)
     if not isinstance(root, svg.SVG):
-        raise FormatError(f"{path} is XML, but not SVG")
-    return root
+        raise FormatError("it is XML, but not SVG")
+    for element in root.elements():
+        if isinstance(element, svg.Shape):
+            yield element
 
 
 def _name_of(shape: Any) -> str | None:

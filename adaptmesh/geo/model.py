@@ -204,12 +204,15 @@ class _Model:
         """Points in what the surfaces leave out, and in each surface with a name."""
         import shapely
 
-        faces = {number: self._face(number) for number in self.surfaces}
-        union = shapely.union_all(list(faces.values()))
-        filled = shapely.union_all(
-            [shapely.Polygon(part.exterior) for part in shapely.get_parts(union)]
-        )
-        holes = _parts_inside(filled.difference(union))
+        try:
+            faces = {number: self._face(number) for number in self.surfaces}
+            union = shapely.union_all(list(faces.values()))
+            filled = shapely.union_all(
+                [shapely.Polygon(part.exterior) for part in shapely.get_parts(union)]
+            )
+            holes = _parts_inside(filled.difference(union))
+        except shapely.errors.GEOSException as error:
+            raise DomainError(f"a curve loop crosses itself or another: {error}") from None
         regions = {
             name: [seed for k in numbers for seed in _parts_inside(faces[k])]
             for name, numbers in self.surface_names.items()

@@ -58,8 +58,10 @@ def _read_elements(cursor: Cursor, out: Sections) -> None:
         dim, entity, kind = cursor.rows(1, ("i4", 3))[0][0].tolist()
         size = one(cursor, "u8")
         refuse_element_types({kind: size})
+        if not size:
+            continue
         tags, nodes = cursor.rows(size, ("u8", 1), ("u8", NODES_OF_TYPE[kind]))
-        group = np.full(size, _group(out, dim, entity) if kind != 15 and size else 0)
+        group = np.full(size, _group(out, dim, entity) if kind != 15 else 0)
         found.setdefault(kind, []).append(Elements(tags[:, 0], nodes, group))
         done += size
     if done != count:

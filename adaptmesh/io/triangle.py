@@ -148,7 +148,7 @@ class _Table:
 
     def header(self, what: str, count: int) -> list[int]:
         values = self._numbers(what, count)
-        if not ((values >= 0) & (values == np.round(values))).all():
+        if not ((values >= 0) & (values < 2.0**53) & (values == np.round(values))).all():
             raise FormatError(f"{self.path}: {what} is {values.tolist()}, not whole numbers")
         out: list[int] = values.astype(np.int64).tolist()
         return out

@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import FormatError
 from .content import Array
 from .files import read_bytes
+from .located import refusing
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -49,22 +50,20 @@ class XdmfArrays:
         if not name or len(PurePosixPath(name).parts) != 1:
             raise FormatError(f"{where} refers to {reference.strip()!r}, not to a file beside it")
         file = self._file(name)
-        found = file.get(path)
-        if found is None or not hasattr(found, "shape"):
-            raise FormatError(f"{where} refers to {path!r}, which {name} does not have")
-        if found.size > _LARGEST:
-            raise FormatError(f"{where} has {found.size:.3g} entries: {name} is damaged")
-        values: Array = np.asarray(found[()])
+        with refusing(f"{where} refers to {path!r}, which cannot be read from {name}"):
+            found = file.get(path)
+            if found is None or not hasattr(found, "shape"):
+                raise FormatError(f"{where} refers to {path!r}, which {name} does not have")
+            if found.size > _LARGEST:
+                raise FormatError(f"{where} has {found.size:.3g} entries: {name} is damaged")
+            values: Array = np.asarray(found[()])
         return values
 
     def _file(self, name: str) -> Any:
         if name not in self._files:
-            try:
-                self._files[name] = import_h5py().File(
-                    io.BytesIO(read_bytes(self._folder / name)), "r"
-                )
-            except OSError as error:
-                raise FormatError(f"{name} beside it is not an HDF5 file: {error}") from None
+            data, h5py = io.BytesIO(read_bytes(self._folder / name)), import_h5py()
+            with refusing(f"{name} beside it is damaged, or no HDF5 file"):
+                self._files[name] = h5py.File(data, "r")
         return self._files[name]
 
 

@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import adaptmesh as am
@@ -117,3 +118,12 @@ def test_the_domain_of_a_mesh(tmp_path):
     mesh = am.generate(am.Domain.rectangle(0, 0, 2, 1), 0.5)
     am.write(tmp_path / "a.vtu", mesh)
     assert am.read_domain(tmp_path / "a.vtu").area == pytest.approx(2.0)
+
+
+def test_a_mesh_that_lies_over_itself_has_no_domain(tmp_path):
+    points = np.array([[0, 0], [4, 0], [2, 3], [0, 2], [4, 2], [2, -1.0]])
+    edges = np.array([[0, 1], [1, 2], [2, 0], [3, 4], [4, 5], [5, 3]])
+    mesh = am.Mesh(points, np.array([[0, 1, 2], [3, 5, 4]]), edges=edges)
+    am.write(tmp_path / "a.mesh", mesh)
+    with pytest.raises(DomainError, match=r"a\.mesh: the mesh lies over itself near"):
+        am.read_domain(tmp_path / "a.mesh")

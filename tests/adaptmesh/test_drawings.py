@@ -205,7 +205,7 @@ def test_dxf_is_a_domain(dxf):
     [
         (
             lambda s: s.add_3dface([(0, 0), (1, 0), (1, 1)]),
-            r"3DFACE .* on layer '0' cannot be read",
+            r"3DFACE .* on layer '0': cannot be read",
         ),
         (lambda s: s.add_line((0, 0, 0), (1, 0, 1)), "not lie in a plane"),
         (lambda s: s.add_circle((0, 0), 1, dxfattribs={"extrusion": (1, 0, 0)}), "tilted plane"),

@@ -74,7 +74,7 @@ def test_truncated_anywhere_is_an_error(poly, n_lines):
         ("8 2 0 1", "8 3 0 1", "line 2: .* 3 coordinates"),
         ("8 2 0 1", "-8 2 0 1", "line 2: -8 is not a number of points"),
         ("5  1 1  0", "6  1 1  0", "line 7: the points are not numbered"),
-        ("5  1 1  0", "5  1 one  0", "line 7: point 4 of 8 should be numbers"),
+        ("5  1 1  0", "5  1 one  0", "line 7: point 4 of 8 should be finite numbers"),
         ("5  1 1  0   #", "5  1   #", "line 7: point 4 of 8 needs at least 3"),
         ("5  5 6  7", "5  5 9  7", "line 16: segment 4 ends in point 9; there are points 1 to 8"),
         ("5  5 6  7", "5  5 6", "line 16: segment 4 of 8 needs at least 4"),
