@@ -25,13 +25,14 @@ from .errors import (
     TransientInterrupted,
 )
 from .explain import Explanation, explain
-from .generate import generate, predict
+from .generate import generate
 from .history import History, Iteration
 from .io import read, read_fields, read_sol, write, write_sol
 from .loop import adapt_loop
 from .mesh import Mesh
 from .overlay import Overlay
 from .plot import plot
+from .prediction import predict
 from .raw import Outline
 from .reasons import Cause, Reason
 from .repair import Repair, Repairs, repair

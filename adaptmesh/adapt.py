@@ -14,9 +14,10 @@ from metrics import ControlSpace
 from .chains import vertices_at
 from .domain import Domain
 from .frozen import frozen_domain
-from .generate import Budget, Progress, Samples, generate, predict
+from .generate import Budget, Progress, Samples, generate
 from .local import Editing, edited
 from .mesh import Mesh
+from .prediction import predict
 
 
 def adapt(

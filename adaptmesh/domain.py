@@ -199,9 +199,9 @@ class Domain:
 
         Notes
         -----
-        `points`, `segments` and `triangles` of the domain are a polygon inscribed in the curves
-        that is fine enough to predict sizes with; `curved` tells which of its points are on which
-        curve. `area` is that between the true curves.
+        `points`, `segments` and `triangles` of the domain are a polygon inscribed in the curves;
+        `curved` tells which of its points are on which curve. `area` is that between the true
+        curves.
 
         Examples
         --------
@@ -339,18 +339,21 @@ class Domain:
     @cached_property
     def _area_beyond_chords(self) -> float:
         """The area between the boundary and its chords, negative where the curve is inside."""
+        boundary = self.piece_segments[self.piece_is_boundary]
+        segments = boundary[self.curved.segment_runs[boundary] >= 0]
+        areas = self.curved.areas_beside(
+            self.curved.segment_runs[segments], self.curved.segment_parameters[segments]
+        )
+        return float(np.sum(np.where(self.inside_is_left_of(segments), areas, -areas)))
+
+    def inside_is_left_of(self, segments: Ints) -> NDArray[np.bool_]:
+        """Whether the domain is on the left of boundary segments, given by number (k,)."""
         halves = np.concatenate(
             [self.triangles[:, [0, 1]], self.triangles[:, [1, 2]], self.triangles[:, [2, 0]]]
         )
         n = len(self.points)
-        boundary = self.piece_segments[self.piece_is_boundary]
-        segments = boundary[self.curved.segment_runs[boundary] >= 0]
         a, b = self.segments[segments].astype(np.int64).T
-        on_left = np.isin(a * n + b, halves[:, 0].astype(np.int64) * n + halves[:, 1])
-        areas = self.curved.areas_beside(
-            self.curved.segment_runs[segments], self.curved.segment_parameters[segments]
-        )
-        return float(np.sum(np.where(on_left, areas, -areas)))
+        return np.isin(a * n + b, halves[:, 0].astype(np.int64) * n + halves[:, 1])
 
     def outline(self, tolerance: float) -> Floats:
         """All boundaries and internal lines as straight segments, curves to a tolerance.

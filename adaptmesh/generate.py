@@ -19,6 +19,7 @@ from .domain import Domain
 from .edge_lengths import measure_edges
 from .errors import BudgetError, DomainError
 from .mesh import Mesh
+from .prediction import predict
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -190,22 +191,6 @@ def generate(
     mesher.compact()
     report("done", 1.0)
     return finished_mesh(domain, mesher, domain.region_of_label(mesher.labels()))
-
-
-def predict(domain: Domain, metric: Any) -> int:
-    """The number of vertices that a mesh of the domain will have, before it is made.
-
-    (2/sqrt 3) C + B/2 + 1, what a hexagonal lattice of unit edges would have: C is the complexity,
-    the integral of sqrt(det M), and B the metric length of the boundary. To about 5 %, except for
-    meshes of a few triangles; features far below their surroundings may hide from it.
-    """
-    field = metrics.as_control_space(metric)
-    complexity = metrics.complexity(domain.points, domain.triangles, field).value
-    boundary = metrics.edge_lengths(
-        domain.points, domain.pieces[domain.piece_is_boundary], field
-    ).sum()
-    least = max(3, int(domain.curved.is_vertex.sum()))
-    return max(least, int(2 / np.sqrt(3) * complexity + boundary / 2) + 1)
 
 
 @dataclass(frozen=True)
