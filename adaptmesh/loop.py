@@ -19,10 +19,11 @@ from . import history_files as files
 from .adapt import adapt
 from .domain import Domain
 from .errors import BudgetError, LoopError, LoopInterrupted
+from .expected import expect_function
 from .history import History, Iteration, PathLike, Seconds, Snapshot
 from .mesh import Mesh
 from .solved import Solved, as_solved, space_of
-from .steering import Steering
+from .steering import Steering, check_reachable
 from .stopping import Budget, StoppingRule
 from .transfer import METHODS
 from .transfer import transfer as transferred
@@ -135,6 +136,9 @@ def adapt_loop(
         For options that contradict each other, before anything is done.
     """
     budget = budget or Budget()
+    if not isinstance(budget, Budget):
+        raise TypeError(f"budget={budget!r}: give adaptmesh.Budget(vertices=..., seconds=...)")
+    expect_function("callback", callback)
     mesh = with_domain(mesh)
     if h_max is None:
         h_max = largest_size(mesh)
@@ -150,6 +154,8 @@ def adapt_loop(
         order,
         budget.vertices,
     )
+    if target_vertices is not None:
+        check_reachable(target_vertices, mesh, h_max)
     rule = StoppingRule(tolerance, max_iterations, budget)
     work = Work(Solver(solve), mesh, steering, transfer)
     keeping = Keeping(None if save is None else Path(save), keep_last)
@@ -344,14 +350,29 @@ def _resumed(
         return History(options=options)
     earlier = resume if isinstance(resume, History) else History.load(resume, mesh.domain)
     if earlier:
-        first = earlier[0].mesh
-        same = np.array_equal(first.points, mesh.points)
-        if not (same and np.array_equal(first.triangles, mesh.triangles)):
-            raise ValueError(
-                f"the history to resume began with another mesh ({len(first.points)} vertices) "
-                f"than is given ({len(mesh.points)} vertices)"
-            )
+        refuse_other_mesh(earlier[0].mesh, mesh)
     return replace(earlier, reason="", converged=False, options=options)
+
+
+def refuse_other_mesh(first: Mesh, mesh: Mesh) -> None:
+    """Refuse to go on with a history that began with another mesh, or one of another domain."""
+    same = np.array_equal(first.points, mesh.points)
+    if not (same and np.array_equal(first.triangles, mesh.triangles)):
+        raise ValueError(
+            f"the history to resume began with another mesh ({len(first.points)} vertices) "
+            f"than is given ({len(mesh.points)} vertices)"
+        )
+    one, two = first.domain, mesh.domain
+    if one is None or two is None or one is two:
+        return
+    arrays = ("points", "segments", "segment_tags", "holes", "seeds", "seed_regions")
+    if not all(np.array_equal(getattr(one, name), getattr(two, name)) for name in arrays) or (
+        [(p.first, p.second) for p in one.periodic] != [(p.first, p.second) for p in two.periodic]
+    ):
+        raise ValueError(
+            "the history to resume is of another domain than the mesh that is given: give its "
+            "first mesh, or begin anew with its last"
+        )
 
 
 def _unit_fraction(mesh: Mesh, field: Background) -> float:

@@ -36,6 +36,7 @@ def domain_of_mesh(mesh: Mesh, corner_angle: float | None = None) -> Domain:
     """
     if not len(mesh.triangles):
         raise DomainError("the mesh has no triangles, so it covers no domain")
+    _refuse_what_is_no_mesh(mesh)
     edges, tags = with_interfaces(mesh)
     segments, segment_tags = [], []
     curves: list[Curve] = []
@@ -68,6 +69,25 @@ def domain_of_mesh(mesh: Mesh, corner_angle: float | None = None) -> Domain:
         region_tags=mesh.region_names,
         corner_angle=0.0,  # every end of these curves is a corner
     )
+
+
+def _refuse_what_is_no_mesh(mesh: Mesh) -> None:
+    clockwise = np.flatnonzero(mesh.areas < 0)
+    if len(clockwise):
+        i = int(clockwise[0])
+        raise DomainError(
+            f"triangle {i}, {mesh.triangles[i].tolist()}, is clockwise ({len(clockwise)} of "
+            f"{len(mesh.triangles)} are): turn them, triangles[:, ::-1]"
+        )
+    used = np.unique(mesh.triangles)
+    order = used[np.lexsort(mesh.points[used].T)]
+    same = np.flatnonzero((mesh.points[order[1:]] == mesh.points[order[:-1]]).all(axis=1))
+    if len(same):
+        i, j = sorted(order[same[0] : same[0] + 2].tolist())
+        x, y = mesh.points[i].tolist()
+        raise DomainError(
+            f"vertices {i} and {j} of the mesh are the same, ({x:.17g}, {y:.17g}): make them one"
+        )
 
 
 def _half_edges(triangles: Ints) -> tuple[Ints, Ints]:

@@ -113,6 +113,8 @@ def _as_array(values: Any, what: str) -> Array:
         array = np.asarray(values)
     except ValueError as error:
         raise TypeError(f"{what} is not an array of numbers: {error}") from error
+    if np.ma.is_masked(values):
+        raise TypeError(f"{what} has masked values: fill them, np.ma.filled(values, ...)")
     if array.dtype.kind not in "iufc" or array.ndim == 0:
         kind = type(values).__name__ if array.ndim == 0 else f"an array of {array.dtype}"
         raise TypeError(f"{what} is {kind}: an array of numbers is wanted")

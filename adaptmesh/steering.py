@@ -9,10 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metrics import Curvature, Limits, normalised
-from metrics.normalise import check_norm
+from metrics.nodal import predicted_vertices
+from metrics.normalise import check_combination, check_norm
+from metrics.recovery import check_method
 from metrics.solution import optimal_tensors
 
 from .errors import MetricError
+from .expected import expect_number
 from .mesh import Mesh
 from .solved import Array, Solved, space_of
 
@@ -21,6 +24,8 @@ Floats = NDArray[np.float64]
 # Meshes come within a few per cent of the number of vertices predicted, and a budget is not
 # exceeded: this much of it is asked for.
 SHARE_OF_BUDGET = 0.95
+
+SCALES = (1e-100, 1e100)  # of fields; squares of their derivatives are to be numbers
 
 
 @dataclass(frozen=True)
@@ -58,7 +63,11 @@ class Steering:
     max_vertices: int = 5_000_000
 
     def __post_init__(self) -> None:
+        for name in ("p", "growth", "order"):
+            expect_number(name, getattr(self, name))
         check_norm(self.p)
+        check_method(self.recovery)
+        check_combination(self.combine)
         if self.target_vertices is not None and self.error is not None:
             raise ValueError("give one target: target_vertices or error")
         if self.target_vertices is not None:
@@ -68,9 +77,8 @@ class Steering:
                 f"target_vertices={self.target_vertices!r} is more than the budget of "
                 f"{self.max_vertices}"
             )
-        errors = self.error.values() if isinstance(self.error, Mapping) else [self.error]
-        if self.error is not None and not all(0 < e < np.inf for e in errors if e is not None):
-            raise ValueError(f"error={self.error!r}: must be positive")
+        if self.error is not None:
+            _check_errors(self.error)
         check_fields(self.fields)
         if not self.growth > 1:
             raise ValueError(f"growth={self.growth!r}: must be more than 1")
@@ -81,7 +89,7 @@ class Steering:
         """The metric (n, 3) at the vertices for the next mesh, and the errors on this one."""
         if solved.metric is None:
             return self._recovered(mesh, solved)
-        count = self._count(len(mesh.points), solved.errors)
+        count = self._count(mesh, solved.errors)
         metric = solved.metric
         if count is None:
             metric = self.limits.applied(metric, mesh.points, mesh.triangles)
@@ -113,7 +121,8 @@ class Steering:
         shares = None
         if self.error is not None and not solved.errors:
             shares = [self._wanted(name) for name in curvatures]
-        count = self._count(len(points), errors)
+        self._refuse_unknown(errors, solved)
+        count = self._count(mesh, errors)
         if count is None:
             raise MetricError(
                 "neither target_vertices nor error is given, and solve returned no metric: "
@@ -135,6 +144,8 @@ class Steering:
         """The fields that steer and are not the same everywhere, (n, k)."""
         chosen = steering_fields(self.fields, solved.fields, mesh)
         bent = {n: v.reshape(len(v), -1) for n, v in chosen.items() if not is_constant(v)}
+        for name, values in bent.items():
+            refuse_beyond_range(name, values)
         if not bent:
             raise MetricError(
                 f"no field asks for any size: {', '.join(map(repr, chosen))} "
@@ -142,8 +153,22 @@ class Steering:
             )
         return bent
 
-    def _count(self, n_points: int, errors: Mapping[str, float]) -> float | None:
-        """How many vertices the next mesh is to have; None if only a metric can say."""
+    def _refuse_unknown(self, errors: Mapping[str, float], solved: Solved) -> None:
+        known = dict.fromkeys([*solved.fields, *errors])
+        for name in self.error if isinstance(self.error, Mapping) else ():
+            if name not in known:
+                raise MetricError(
+                    f"error asks for something of {name!r}, but solve gave "
+                    f"{', '.join(map(repr, known))}"
+                )
+
+    def _count(self, mesh: Mesh, errors: Mapping[str, float]) -> float | None:
+        """How many vertices the next mesh is to have; None if only a metric can say.
+
+        What is on the way to the number wanted, or comes of an error that even the coarsest mesh
+        has, is at least that of the coarsest mesh.
+        """
+        n_points = len(mesh.points)
         if self.error is not None:
             wanted = n_points * float(self.excess(errors) ** (1 / self.order))
             wanted = min(wanted, SHARE_OF_BUDGET * self.max_vertices)
@@ -151,7 +176,8 @@ class Steering:
             wanted = self.target_vertices
         else:
             return None
-        return max(3.0, min(max(wanted, n_points / self.growth), n_points * self.growth))
+        wanted = min(max(wanted, n_points / self.growth), n_points * self.growth)
+        return max(3.0, wanted, fewest_vertices(mesh, self.limits.h_max))
 
     def _wanted(self, name: str) -> float:
         if not isinstance(self.error, Mapping):
@@ -185,6 +211,34 @@ def steering_fields(
     return {name: fields[name] for name in names}
 
 
+def refuse_beyond_range(name: str, values: Array) -> None:
+    """Refuse a field of which the derivatives are no numbers any more."""
+    largest = float(np.abs(values).max())
+    if not SCALES[0] <= largest <= SCALES[1]:
+        raise MetricError(
+            f"field {name!r} has values up to {largest:.3g}: choose a unit in which they are "
+            f"between {SCALES[0]:g} and {SCALES[1]:g}"
+        )
+
+
+def fewest_vertices(mesh: Mesh, h_max: float) -> float:
+    """About how many vertices a mesh has in which all sizes are the largest allowed."""
+    if h_max == np.inf:
+        return 3.0
+    coarsest = np.tile([h_max**-2, 0.0, h_max**-2], (len(mesh.points), 1))
+    return predicted_vertices(mesh.points, mesh.triangles, coarsest)
+
+
+def check_reachable(target_vertices: float, mesh: Mesh, h_max: float) -> None:
+    """Refuse a number of vertices that is less than the coarsest mesh has."""
+    fewest = fewest_vertices(mesh, h_max)
+    if target_vertices < fewest:
+        raise ValueError(
+            f"target_vertices={target_vertices!r}: with all sizes h_max = {h_max:.6g} a mesh has "
+            f"about {fewest:.0f}; raise h_max, or ask for more"
+        )
+
+
 def is_constant(values: Array) -> bool:
     """Whether a field, and each of its components, is the same everywhere."""
     return not np.ptp(values.reshape(len(values), -1), axis=0).any()
@@ -192,8 +246,19 @@ def is_constant(values: Array) -> bool:
 
 def check_target(vertices: float) -> None:
     """Refuse a number of vertices of which no mesh can be."""
+    expect_number("target_vertices", vertices)
     if not 3 <= vertices < np.inf:
         raise ValueError(f"target_vertices={vertices!r}: a number, at least 3, is needed")
+
+
+def _check_errors(error: float | Mapping[str, float]) -> None:
+    for name, value in error.items() if isinstance(error, Mapping) else [("", error)]:
+        label = f"error[{name!r}]" if name else "error"
+        expect_number(label, value)
+        if not 0 < value < np.inf:
+            raise ValueError(f"{label}={value!r}: must be positive, and finite")
+    if isinstance(error, Mapping) and not error:
+        raise ValueError("error={}: give the error wanted of each field, by name")
 
 
 def check_fields(names: Sequence[str] | None) -> None:

@@ -20,11 +20,13 @@ from numpy.typing import NDArray
 
 from metrics import Background, Curvature, Limits, absolute, combined
 from metrics.nodal import predicted_vertices
-from metrics.normalise import check_norm
+from metrics.normalise import check_combination, check_norm
+from metrics.recovery import check_method
 from metrics.solution import optimal_tensors
 
+from .expected import expect_number
 from .mesh import Mesh
-from .steering import check_fields, check_target, is_constant, steering_fields
+from .steering import check_fields, check_target, is_constant, refuse_beyond_range, steering_fields
 
 Floats = NDArray[np.float64]
 Hessians = Mapping[str, Floats]
@@ -49,7 +51,10 @@ class SteeringInTime:
     in_time: str
 
     def __post_init__(self) -> None:
+        expect_number("p", self.p)
         check_norm(self.p)
+        check_method(self.recovery)
+        check_combination(self.combine)
         check_target(self.target_vertices)
         check_fields(self.fields)
         if self.in_time not in IN_TIME:
@@ -57,12 +62,15 @@ class SteeringInTime:
 
     def hessians(self, mesh: Mesh, fields: Mapping[str, NDArray[Any]]) -> Hessians:
         """At one time; zero where a field is the same everywhere, as before anything happens."""
-        return {
-            name: np.zeros((len(values), 3))
-            if is_constant(values)
-            else Curvature.of(mesh.points, mesh.triangles, values, self.recovery).absolute
-            for name, values in steering_fields(self.fields, fields, mesh).items()
-        }
+        out = {}
+        for name, values in steering_fields(self.fields, fields, mesh).items():
+            if is_constant(values):
+                out[name] = np.zeros((len(values), 3))
+                continue
+            refuse_beyond_range(name, values)
+            curvature = Curvature.of(mesh.points, mesh.triangles, values, self.recovery)
+            out[name] = curvature.absolute
+        return out
 
     def over_time(self, times: Floats, samples: Sequence[Hessians]) -> Hessians:
         """One Hessian of each field for an interval: the mean by trapezoids, or the finest."""

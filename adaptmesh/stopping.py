@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .expected import expect_number, expect_whole
 from .history import History
 from .steering import Steering
 
@@ -29,6 +30,8 @@ class Budget:
     seconds: float = np.inf
 
     def __post_init__(self) -> None:
+        expect_number("vertices", self.vertices)
+        expect_number("seconds", self.seconds)
         if not self.vertices >= 3:
             raise ValueError(f"a budget of {self.vertices!r} vertices: at least 3 are needed")
         if not self.seconds >= 0:
@@ -54,10 +57,10 @@ class StoppingRule:
     budget: Budget = field(default_factory=Budget)
 
     def __post_init__(self) -> None:
+        expect_number("tolerance", self.tolerance)
         if not self.tolerance >= 0:
             raise ValueError(f"tolerance={self.tolerance!r}: must not be negative")
-        if not self.max_iterations >= 0:
-            raise ValueError(f"max_iterations={self.max_iterations!r}: must not be negative")
+        expect_whole("max_iterations", self.max_iterations, 0)
 
     def ended(self, history: History, steering: Steering, elapsed: float) -> History | None:
         """The history with its end, or None if there is to be another iteration."""
@@ -76,7 +79,7 @@ class StoppingRule:
                     f"the budget of {self.budget.vertices:,} vertices is used up", False
                 )
         if len(history) > self.max_iterations:
-            return history.ended(f"the mesh was adapted {self.max_iterations} times", False)
+            return history.ended(f"the mesh was adapted {len(history) - 1} times", False)
         if elapsed >= self.budget.seconds:
             return history.ended(f"the budget of {self.budget.seconds:g} s is used up", False)
         return None

@@ -32,11 +32,13 @@ from metrics import Background, Limits
 from . import transient_files as files
 from .adapt import adapt
 from .errors import TransientError, TransientInterrupted
+from .expected import expect_function, expect_whole
 from .history import PathLike
 from .history_files import refuse_history
-from .loop import Clock, largest_size, with_domain
+from .loop import Clock, largest_size, refuse_other_mesh, with_domain
 from .mesh import Mesh
 from .solved import Solved, as_solved, space_of
+from .steering import check_reachable
 from .steering_in_time import SteeringInTime
 from .transfer import METHODS
 from .transfer import transfer as transferred
@@ -146,13 +148,14 @@ def transient_loop(
     """
     ends = _checked_times(times)
     n, lengths = len(ends) - 1, np.diff(ends)
-    if sweeps < 1 or sweeps != int(sweeps):
-        raise ValueError(f"sweeps={sweeps!r}: a whole number from 1 on is wanted")
+    expect_whole("sweeps", sweeps, 1)
+    expect_function("callback", callback)
     mesh = with_domain(mesh)
     limits = Limits(
         h_min, largest_size(mesh) if h_max is None else h_max, max_anisotropy, gradation
     )
     steering = SteeringInTime(target_vertices, p, fields, limits, recovery, combine, in_time)
+    check_reachable(target_vertices, mesh, limits.h_max)
     solver = _Solver(initial, advance, transfer, keep_bounds)
     history = _resumed(resume, mesh, ends)
     folder = _begun(save, history, resume)
@@ -196,7 +199,8 @@ class _Solver:
     def __post_init__(self) -> None:
         for name in ("initial", "advance"):
             if not callable(getattr(self, name)):
-                raise TypeError(f"{name} must be a function")
+                kind = type(getattr(self, name)).__name__
+                raise TypeError(f"{name} must be a function, not {kind}")
         if self.method not in METHODS:
             raise ValueError(f"transfer={self.method!r} is none of {', '.join(map(repr, METHODS))}")
 
@@ -320,13 +324,7 @@ def _resumed(
                 f"{had[-1][1]:g} in sweep {k}, which are not those of times: give the same"
             )
     if history.sweeps:
-        first = history.sweeps[0][0].mesh
-        same = np.array_equal(first.points, mesh.points)
-        if not (same and np.array_equal(first.triangles, mesh.triangles)):
-            raise ValueError(
-                f"the history to resume began with another mesh ({len(first.points)} vertices) "
-                f"than is given ({len(mesh.points)} vertices)"
-            )
+        refuse_other_mesh(history.sweeps[0][0].mesh, mesh)
     return history
 
 

@@ -83,10 +83,7 @@ def graded(
     """
     where = as_points(points)
     tensors = tensor.pack(metric, points=where)
-    if law not in LAWS:
-        raise MetricError(f"law must be one of {', '.join(map(repr, LAWS))}, not {law!r}")
-    if not 1 < beta < np.inf:
-        raise MetricError(f"beta must be above 1, and finite, not {beta!r}; 1.5 is usual")
+    check_growth(beta, law)
     if not 0 < tolerance < 1:
         raise MetricError(f"tolerance must be between 0 and 1, not {tolerance!r}")
     return _core.graded(
@@ -97,3 +94,11 @@ def graded(
         float(np.log(beta)),
         float(tolerance),
     )
+
+
+def check_growth(beta: float, law: str) -> None:
+    """Refuse a bound on growth, or a law, that is none."""
+    if law not in LAWS:
+        raise MetricError(f"law must be one of {', '.join(map(repr, LAWS))}, not {law!r}")
+    if not 1 < beta < np.inf:
+        raise MetricError(f"beta must be above 1, and finite, not {beta!r}; 1.5 is usual")

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from . import tensor
 from .arrays import Floats, Ints, as_points, as_triangles
 from .errors import MetricError
-from .gradation import graded
+from .gradation import check_growth, graded
 from .nodal import border_edges, nodal_complexity, nodal_lengths, vertices_of
 
 __all__ = [
@@ -49,6 +49,11 @@ class Limits:
     max_anisotropy: float = np.inf
     gradation: float | None = 2.0
     law: str = "mixed"
+
+    def __post_init__(self) -> None:
+        tensor.check_limits(self.h_min, self.h_max, self.max_anisotropy)
+        if self.gradation is not None:
+            check_growth(self.gradation, self.law)
 
     def bounded(self, metric: Floats) -> Floats:
         return tensor.limit(metric, self.h_min, self.h_max, self.max_anisotropy)
@@ -133,14 +138,13 @@ def combined(metrics: Sequence[ArrayLike], how: str = "intersection") -> Floats:
     packed = [tensor.pack(m) for m in metrics]
     if not packed:
         raise MetricError("at least one metric is needed")
+    check_combination(how)
     if how == "intersection":
         out = packed[0]
         for other in packed[1:]:
             out = tensor.intersect(out, other)
         return out
-    if how == "average":
-        return tensor.exp(np.mean([tensor.log(m) for m in packed], axis=0))
-    raise MetricError(f'metrics are combined by "intersection" or "average", not {how!r}')
+    return tensor.exp(np.mean([tensor.log(m) for m in packed], axis=0))
 
 
 def normalised(
@@ -301,6 +305,12 @@ def _impossible(goal: Goal, amount: float, too_fine: bool, limits: Limits) -> st
         f"{asked}: the finest metric allowed, h_min = {limits.h_min:.6g} everywhere, has "
         f"{amount:.6g}; lower h_min, or {remedy}"
     )
+
+
+def check_combination(how: str) -> None:
+    """Refuse a way to combine metrics that there is not."""
+    if how not in ("intersection", "average"):
+        raise MetricError(f'metrics are combined by "intersection" or "average", not {how!r}')
 
 
 def check_norm(p: float) -> None:

@@ -37,7 +37,7 @@ def gradients(
     MetricError
         As for `hessians`.
     """
-    _check_method(method)
+    check_method(method)
     p, t, u = checked_values(points, triangles, values)
     if method == "least squares":
         return _fit(p, t, u)[0]
@@ -101,7 +101,7 @@ def derivatives(
 
     With Green's formula the first are by the projection.
     """
-    _check_method(method)
+    check_method(method)
     p, t, u = checked_values(points, triangles, values)
     if method == "least squares":
         return _fit(p, t, u)
@@ -135,7 +135,8 @@ def absolute(hessians: ArrayLike, floor: ArrayLike = 0.0) -> Floats:
     return _core.absolute(tensors, floors)
 
 
-def _check_method(method: str) -> None:
+def check_method(method: str) -> None:
+    """Refuse a method of recovery that there is not."""
     if method not in METHODS:
         raise MetricError(f"method must be one of {', '.join(map(repr, METHODS))}, not {method!r}")
 

@@ -293,13 +293,18 @@ def limit(
     First both sizes are brought into [h_min, h_max], then the larger is lowered to `max_anisotropy`
     times the smaller.
     """
+    check_limits(h_min, h_max, max_anisotropy)
+    high = float(h_min) ** -2 if h_min > 0 else np.inf
+    out = _core.limited(pack(tensors), float(h_max) ** -2, high, float(max_anisotropy) ** 2)
+    return pack(out, what="the limited metric")
+
+
+def check_limits(h_min: float, h_max: float, max_anisotropy: float) -> None:
+    """Refuse bounds on sizes, or on their ratio, that are none."""
     if not 0 <= h_min <= h_max or h_max == 0:
         raise MetricError(f"0 <= h_min <= h_max and 0 < h_max are needed, not {h_min}, {h_max}")
     if not max_anisotropy >= 1:
         raise MetricError(f"max_anisotropy is a ratio of sizes, at least 1, not {max_anisotropy}")
-    high = float(h_min) ** -2 if h_min > 0 else np.inf
-    out = _core.limited(pack(tensors), float(h_max) ** -2, high, float(max_anisotropy) ** 2)
-    return pack(out, what="the limited metric")
 
 
 def _packed(tensors: ArrayLike) -> Floats:

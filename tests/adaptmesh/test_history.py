@@ -1,6 +1,7 @@
 """Histories: printed, plotted, saved, and gone on with after an interruption."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -91,6 +92,18 @@ def test_another_mesh_is_refused(start, whole):
     other = am.generate(start.domain, 0.1)
     with pytest.raises(ValueError, match="began with another mesh"):
         am.adapt_loop(solve, other, resume=whole, **OPTIONS)
+
+
+def test_another_domain_is_refused(start, whole):
+    corners = start.domain.points.copy()
+    other = am.Domain(
+        corners,
+        start.domain.segments,
+        regions={"left": (0.2, 0.1), "right": (0.9, 0.1)},
+        names={"wall": [0, 1], "middle": [6]},
+    )
+    with pytest.raises(ValueError, match="is of another domain"):
+        am.adapt_loop(solve, replace(start, domain=other), resume=whole, **OPTIONS)
 
 
 def test_saved_and_loaded_is_the_same(whole, start, tmp_path):

@@ -218,6 +218,15 @@ def test_the_number_of_iterations_ends_it(square):
         ({"target_vertices": 500, "keep_last": 0}, "keep_last"),
         ({"target_vertices": 500, "keep_last": 1}, "save"),
         ({"target_vertices": 500, "budget": am.Budget(400)}, "more than the budget"),
+        ({"target_vertices": 10}, "all sizes h_max = 0.25 a mesh has about 27; raise h_max"),
+        ({"target_vertices": 500, "max_iterations": 1.5}, "whole number"),
+        ({"target_vertices": 500, "recovery": "magic"}, "'least squares'"),
+        ({"target_vertices": 500, "combine": "magic"}, "combined by"),
+        ({"target_vertices": 500, "h_min": 1}, "h_min <= h_max"),
+        ({"target_vertices": 500, "gradation": 0.5}, "beta must be above 1"),
+        ({"target_vertices": 500, "max_anisotropy": 0}, "max_anisotropy"),
+        ({"error": {}}, "give the error wanted of each field"),
+        ({"target_vertices": 500, "fields": []}, "give the names"),
     ],
 )
 def test_options_that_make_no_sense_are_refused_before_any_solve(square, options, message):
@@ -230,6 +239,26 @@ def test_fields_is_a_list_and_the_mesh_a_mesh(square):
         am.adapt_loop(sampled, square, target_vertices=500, fields="u")
     with pytest.raises(TypeError, match="Mesh is wanted"):
         am.adapt_loop(sampled, square.points, target_vertices=500)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"target_vertices": "500"},
+        {"target_vertices": None, "error": "small"},
+        {"target_vertices": None, "error": {"u": None}},
+        {"p": "2"},
+        {"growth": None},
+        {"tolerance": "a"},
+        {"max_iterations": None},
+        {"budget": 100},
+        {"callback": 3},
+    ],
+)
+def test_options_of_another_type_are_named(square, options):
+    name = list(options)[-1]
+    with pytest.raises(TypeError, match=rf"^{name}.*(wanted|give|function)"):
+        am.adapt_loop(sampled, square, **{"target_vertices": 500, **options})
 
 
 # What goes wrong in it
@@ -255,6 +284,9 @@ def broken(stage, at):
             "key": lambda: {3: u},
             "empty": dict,
             "flat": lambda: np.zeros(len(u)),
+            "masked": lambda: np.ma.masked_less(u, 0),
+            "huge": lambda: 1e200 * u / np.abs(u).max(),
+            "complex": lambda: 1j * u,
             "indefinite": lambda: np.tile([1.0, 5.0, 1.0], (len(u), 1)),
             "estimate": lambda: am.Solution(u, errors=np.nan),
         }[stage]()
@@ -277,6 +309,9 @@ def broken(stage, at):
         ("empty", TypeError, "neither fields nor a metric"),
         ("flat", am.MetricError, "no field asks for any size"),
         ("indefinite", am.MetricError, "positive definite"),
+        ("masked", TypeError, "masked values: fill them"),
+        ("huge", am.MetricError, r"field 'solution' has values up to 1e\+200: choose a unit"),
+        ("complex", am.MetricError, "no field can steer: real values"),
         ("estimate", ValueError, "'error' must be finite"),
     ],
 )
@@ -298,6 +333,67 @@ def test_it_is_an_error_to_ask_for_an_error_where_there_is_none(square):
         am.adapt_loop(sampled, square, target_vertices=500, fields=["u"])
     with pytest.raises(am.LoopError, match="error gives nothing for 'solution'"):
         am.adapt_loop(sampled, square, error={"u": 1})
+    with pytest.raises(am.LoopError, match=r"something of 'w', but solve gave 'solution'$"):
+        am.adapt_loop(sampled, square, error={"solution": 1, "w": 1})
+    with pytest.raises(am.LoopError, match="error gives nothing for 'v'"):
+        am.adapt_loop(lambda mesh: {"u": sampled(mesh), "v": sampled(mesh)}, square, error={"u": 1})
+
+
+def test_an_error_that_the_coarsest_mesh_has_gives_the_coarsest_mesh(square):
+    history = am.adapt_loop(sampled, square, error=1e6)
+    assert history.converged
+    assert len(history.mesh.points) == pytest.approx(27, abs=4)  # sizes of a quarter
+
+
+def test_an_error_out_of_reach_ends_at_the_budget(square):
+    history = am.adapt_loop(sampled, square, error=1e-12, budget=am.Budget(vertices=1500))
+    assert not history.converged
+    assert 1200 < len(history.mesh.points) <= 1500
+
+
+@pytest.mark.parametrize("transfer", ["interpolation", "conservative"])
+def test_fields_of_all_spaces_are_carried_over_regions(plate, transfer):
+    def solve(mesh, previous):
+        edges, n = mesh.unique_edges, len(mesh.points)
+        nodes = np.concatenate([mesh.points, mesh.points[edges].mean(axis=1)])
+        if previous is not None:
+            sizes = {name: len(values) for name, values in previous.items()}
+            assert sizes == {"u": n, "k": len(mesh.triangles), "v": n + len(edges), "w": n}
+            np.testing.assert_allclose(previous["v"], nodes @ [[1, 2], [3, 4]], atol=1e-9)
+        return {
+            "u": sampled(mesh),
+            "k": np.where(mesh.regions == mesh.regions[0], 1.0, 1e6),
+            "v": nodes @ [[1.0, 2], [3, 4]],
+            "w": 1j * sampled(mesh),
+        }
+
+    history = am.adapt_loop(
+        solve, am.generate(plate, 0.15), target_vertices=300, max_iterations=2, transfer=transfer
+    )
+    assert len(history) == 3
+
+
+def test_meshes_that_did_not_come_from_here(square):
+    from scipy.spatial import Delaunay
+
+    points = np.random.default_rng(0).random((60, 2))
+    triangles = Delaunay(points).simplices
+    history = am.adapt_loop(
+        sampled, am.Mesh(points, triangles), target_vertices=150, max_iterations=2
+    )
+    assert history.mesh.areas.sum() == pytest.approx(am.Mesh(points, triangles).areas.sum())
+    with pytest.raises(am.DomainError, match=r"triangle 0, .* is clockwise"):
+        am.adapt_loop(sampled, am.Mesh(points, triangles[:, ::-1]), target_vertices=150)
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0], [1, 1]], float)
+    with pytest.raises(am.DomainError, match="vertices 0 and 4 of the mesh are the same"):
+        am.adapt_loop(sampled, am.Mesh(corners, [[0, 1, 2], [4, 5, 3]]), target_vertices=150)
+    crossing = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0.9, 0.1], [0.2, 2.0]], float)
+    bowtie = am.Mesh(crossing, [[0, 1, 2], [3, 4, 5]])
+    with pytest.raises(am.DomainError, match="the mesh lies over itself near"):
+        am.adapt_loop(sampled, bowtie, target_vertices=150)
+    loose = am.Mesh(np.vstack([square.points, [[5, 5]]]), square.triangles)
+    with pytest.raises(am.LoopError, match=r"\(5.0, 5.0\) is in no triangle"):
+        am.adapt_loop(sampled, loose, target_vertices=150)
 
 
 def test_ctrl_c_and_errors_of_the_callback_leave_the_history(square):

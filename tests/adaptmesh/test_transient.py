@@ -203,6 +203,11 @@ def test_options_are_checked():
         ({"fields": "u"}, "give a list of names"),
         ({"fields": []}, "give the names"),
         ({"p": 0.5}, "p is that of"),
+        ({"recovery": "magic"}, "'least squares'"),
+        ({"h_min": 3}, "h_min <= h_max"),
+        ({"sweeps": 1.5}, "whole number"),
+        ({"callback": 3}, "callback must be a function"),
+        ({"target_vertices": 8}, "raise h_max, or ask for more"),
     ]:
         given = {"times": TIMES, "target_vertices": 100, **options}
         with pytest.raises((ValueError, TypeError), match=says):
@@ -339,5 +344,5 @@ def test_errors_of_the_callback_and_of_initial():
     assert len(caught.value.history.intervals) == 1  # it was complete
     with pytest.raises(TransientError, match="interval 0, initial: TypeError: initial returned"):
         transient_loop(known, lambda m: None, mesh, TIMES, target_vertices=100)
-    with pytest.raises(TypeError, match="advance must be a function"):
+    with pytest.raises(TypeError, match="advance must be a function, not int"):
         transient_loop(3, lambda m: None, mesh, TIMES, target_vertices=100)
