@@ -297,26 +297,39 @@ class Domain:
         out.periodic = (*self.periodic, pair)
         return out
 
-    def with_frozen(self, *names: str) -> Domain:
+    def with_frozen(self, *names: str, segments: ArrayLike = ()) -> Domain:
         """The same domain, where each segment of these names is one edge of every mesh.
 
         To fit the mesh of a neighbour, whose edges there are the segments: they are not cut, be the
         sizes asked for large or small. `adapt` freezes boundaries as a mesh has them.
 
+        Parameters
+        ----------
+        *names : str
+            Of boundaries or lines.
+        segments : sequence of int
+            Further segments, by number.
+
         Raises
         ------
         DomainError
-            A name is not known, or bears a curve, or a segment of it is divided by a point.
+            A name or number is not known, or bears a curve, or a segment of it is divided by a
+            point.
         """
         frozen = self.segment_is_frozen.copy()
-        for name in names:
-            mine = self.segment_tags == self.tag_named(name)
-            if (mine & (self.curved.segment_runs >= 0)).any():
-                raise DomainError(
-                    f"{name!r} is curved, so that nothing says where its vertices are: freeze it "
-                    "in `adapt`, as a mesh has it, or give it as points and segments"
-                )
-            frozen |= mine
+        numbers = np.asarray(segments, dtype=np.int64).ravel()
+        unknown = numbers[(numbers < 0) | (numbers >= len(frozen))]
+        if len(unknown):
+            raise DomainError(f"segment {unknown[0]}: they are numbered 0 to {len(frozen) - 1}")
+        frozen[numbers] = True
+        frozen |= np.isin(self.segment_tags, [self.tag_named(name) for name in names])
+        curved = np.flatnonzero(frozen & (self.curved.segment_runs >= 0))
+        if len(curved):
+            raise DomainError(
+                f"{segment_text(self, int(curved[0]))} is curved, so that nothing says where its "
+                "vertices are: freeze it in `adapt`, as a mesh has it, or give it as points and "
+                "segments"
+            )
         times = np.bincount(self.piece_segments, minlength=len(self.segments))
         divided = np.flatnonzero(frozen & (times > 1))
         if len(divided):

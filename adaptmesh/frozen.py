@@ -18,7 +18,8 @@ Floats = NDArray[np.float64]
 def frozen_domain(domain: Domain, mesh: Mesh, names: Iterable[str]) -> Domain:
     """The domain with the edges that a mesh of it has on these boundaries for segments, frozen.
 
-    Every name and region keeps its number. What is periodic with a frozen boundary is frozen too.
+    Every name and region keeps its number. What is periodic with a frozen boundary is frozen too,
+    and what was frozen before stays so.
     """
     names = with_partners(domain, names)
     numbers = [domain.tag_named(name) for name in names]
@@ -43,11 +44,11 @@ def _of_segments(domain: Domain, edges: dict[str, Floats], rest: NDArray[np.bool
     )
     return Domain(
         points,
-        segments,
+        segments,  # the rest first
         holes="nesting" if domain.nesting else domain.holes,
         regions=_regions(domain),
         names={name: np.flatnonzero(tags == tag).tolist() for name, tag in domain.names.items()},
-    )
+    ).with_frozen(segments=np.flatnonzero(domain.segment_is_frozen[rest]))
 
 
 def _of_curves(domain: Domain, edges: dict[str, Floats], rest: NDArray[np.bool_]) -> Domain:
@@ -60,7 +61,7 @@ def _of_curves(domain: Domain, edges: dict[str, Floats], rest: NDArray[np.bool_]
     tags = [domain.names[name] for name, ends in edges.items() for _ in ends]
     tags += [tag_of[i] for i in kept.tolist()]
     isolated = np.setdiff1d(np.flatnonzero(curved.is_vertex), domain.segments)
-    return Domain.from_curves(
+    out = Domain.from_curves(
         curves,
         names={n: np.flatnonzero(np.array(tags) == t).tolist() for n, t in domain.names.items()},
         holes="nesting" if domain.nesting else domain.holes,
@@ -68,6 +69,11 @@ def _of_curves(domain: Domain, edges: dict[str, Floats], rest: NDArray[np.bool_]
         points=domain.points[isolated],
         corner_angle=curved.corner_angle,
         join_tolerance=curved.join_tolerance,
+    )
+    still = np.isin(kept, curved.segment_curves[domain.segment_is_frozen])
+    still_frozen = len(curves) - len(kept) + np.flatnonzero(still)
+    return out.with_frozen(
+        segments=np.flatnonzero(np.isin(out.curved.segment_curves, still_frozen))
     )
 
 

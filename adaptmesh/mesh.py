@@ -53,6 +53,11 @@ class Mesh:
     kept : (n,) array of int32, optional
         The number that each vertex had in the mesh it was made from by ``adapt(..., keep=True)``,
         -1 for those that are new or have moved.
+    required_points : (p,) array of int32, optional
+        In a mesh without a domain, read from a file: numbers of the vertices that every mesh made
+        of it has to have, too.
+    required_edges : (q,) array of int32, optional
+        Likewise, the rows of `edges` that have to stay undivided; see `Domain.with_frozen`.
     """
 
     points: Floats
@@ -64,6 +69,8 @@ class Mesh:
     region_names: Mapping[str, int] = field(default_factory=dict)
     domain: Domain | None = None
     kept: Ints | None = None
+    required_points: Ints = field(default_factory=lambda: np.empty(0, np.int32))
+    required_edges: Ints = field(default_factory=lambda: np.empty(0, np.int32))
 
     def __post_init__(self) -> None:
         def put(name: str, value: object) -> None:
@@ -78,6 +85,8 @@ class Mesh:
         put("edge_tags", _frozen(tags, np.int32, (len(self.edges),)))
         if self.kept is not None:
             put("kept", _frozen(self.kept, np.int32, (len(self.points),)))
+        for name in ("required_points", "required_edges"):
+            put(name, _frozen(getattr(self, name), np.int32, (-1,)))
         put("names", MappingProxyType(dict(self.names)))
         put("region_names", MappingProxyType(dict(self.region_names)))
 

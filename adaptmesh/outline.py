@@ -32,43 +32,55 @@ def domain_of_mesh(mesh: Mesh, corner_angle: float | None = None) -> Domain:
 
     Chains of constrained edges with one name, between the same two regions, become one segment
     where they are straight (to `STRAIGHT` of the extent); vertices on them are dropped. Curved
-    boundaries stay as the mesh has them, or become the curves of `smooth_curves`.
+    boundaries stay as the mesh has them, or become the curves of `smooth_curves`. Required vertices
+    stay points, and required edges frozen segments.
     """
     if not len(mesh.triangles):
         raise DomainError("the mesh has no triangles, so it covers no domain")
     _refuse_what_is_no_mesh(mesh)
     edges, tags = with_interfaces(mesh)
-    segments, segment_tags = [], []
+    segments, segment_edges = [], []  # the latter: one of the edges on each
     curves: list[Curve] = []
-    curve_tags: list[int] = []
+    curve_edges: list[int] = []
+    is_required = np.zeros(len(edges), bool)
+    is_required[mesh.required_edges] = True
+    is_stop = np.zeros(len(mesh.points), bool)
+    is_stop[mesh.required_points] = is_stop[edges[is_required]] = True
     degree = np.bincount(edges.ravel())
     tolerance = STRAIGHT * float(np.ptp(mesh.points, axis=0).max())
     beside = regions_beside(mesh.triangles, mesh.regions, edges, len(mesh.points))
-    for chain, tag in _chains(edges, tags, np.sort(beside, axis=1)):
-        is_ring = chain[0] == chain[-1] and degree[chain[0]] == 2
+    for chain, edge in _chains(edges, tags, np.sort(beside, axis=1), is_stop):
+        is_ring = chain[0] == chain[-1] and degree[chain[0]] == 2 and not is_stop[chain[0]]
         corners = _corners(mesh.points, chain, is_ring, tolerance)
         segments += list(itertools.pairwise(corners))
-        segment_tags += [tag] * (len(corners) - 1)
+        segment_edges += [edge] * (len(corners) - 1)
         if corner_angle is not None:
             smooth = smooth_curves(mesh.points, chain, corners, corner_angle, is_ring)
             curves += smooth
-            curve_tags += [tag] * len(smooth)
+            curve_edges += [edge] * len(smooth)
 
     used, renumbered = np.unique(np.array(segments), return_inverse=True)
     points, pairs = mesh.points[used], renumbered.reshape(-1, 2).astype(np.int32)
     holes, regions = _hole_points(mesh, points, pairs), _region_points(mesh, edges)
+    lone = mesh.points[np.setdiff1d(np.intersect1d(mesh.required_points, mesh.triangles), edges)]
     if corner_angle is None:
-        names = labelled(np.array(segment_tags))
-        return Domain(points, pairs, holes, regions, names, mesh.names, mesh.region_names)
-    return Domain.from_curves(
-        curves,
-        names=labelled(np.array(curve_tags)),
-        holes=holes,
-        regions=regions,
-        tags=mesh.names,
-        region_tags=mesh.region_names,
-        corner_angle=0.0,  # every end of these curves is a corner
-    )
+        points = np.concatenate([points, lone])
+        names = labelled(tags[segment_edges])
+        domain = Domain(points, pairs, holes, regions, names, mesh.names, mesh.region_names)
+        frozen = is_required[segment_edges]
+    else:
+        domain = Domain.from_curves(
+            curves,
+            names=labelled(tags[curve_edges]),
+            holes=holes,
+            regions=regions,
+            tags=mesh.names,
+            region_tags=mesh.region_names,
+            points=lone,
+            corner_angle=0.0,  # every end of these curves is a corner
+        )
+        frozen = is_required[curve_edges][domain.curved.segment_curves]
+    return domain.with_frozen(segments=np.flatnonzero(frozen)) if frozen.any() else domain
 
 
 def _refuse_what_is_no_mesh(mesh: Mesh) -> None:
@@ -133,11 +145,13 @@ def regions_beside(triangles: Ints, regions: Ints, edges: Ints, n_points: int) -
     return out
 
 
-def _chains(edges: Ints, tags: Ints, sides: Ints) -> Iterator[tuple[list[int], int]]:
+def _chains(
+    edges: Ints, tags: Ints, sides: Ints, is_stop: NDArray[np.bool_]
+) -> Iterator[tuple[list[int], int]]:
     """Walk the edges in chains of vertices along which the tag and the sides stay the same.
 
-    A chain ends where its vertex has not exactly two such edges; a closed one starts and ends at
-    its lowest vertex number.
+    Each comes with the number of one of its edges. A chain ends at a stop, and where its vertex has
+    not exactly two such edges; a closed one starts and ends at its lowest vertex number.
     """
     at: dict[int, list[int]] = {}
     for e, (a, b) in enumerate(edges.tolist()):
@@ -146,7 +160,7 @@ def _chains(edges: Ints, tags: Ints, sides: Ints) -> Iterator[tuple[list[int], i
     kind = [(int(t), int(s[0]), int(s[1])) for t, s in zip(tags, sides, strict=True)]
 
     def passes(v: int) -> bool:
-        return len(at[v]) == 2 and kind[at[v][0]] == kind[at[v][1]]
+        return len(at[v]) == 2 and kind[at[v][0]] == kind[at[v][1]] and not is_stop[v]
 
     pairs = edges.tolist()
     walked = [False] * len(pairs)
@@ -163,7 +177,7 @@ def _chains(edges: Ints, tags: Ints, sides: Ints) -> Iterator[tuple[list[int], i
                 if chain[-1] == start or not passes(chain[-1]):
                     break
                 e = next(other for other in at[chain[-1]] if other != e)
-            yield chain, kind[first][0]
+            yield chain, first
 
 
 def _corners(points: Floats, chain: list[int], is_ring: bool, tolerance: float) -> list[int]:

@@ -25,6 +25,7 @@ from metrics.control import Metric
 
 from ..errors import FormatError
 from ..mesh import Mesh
+from ..required import required_items
 from .content import Array, fields_of, mesh_of
 from .files import read_bytes, replace_files
 from .formats import FORMATS, Format, format_of
@@ -144,6 +145,8 @@ def write(
         raise FormatError(f"{path}: {path.suffix} has no option {key!r}")
     with located(path):
         content = outgoing(mesh, metric, fields, triangle_fields or {})
+        if target.required:
+            content.required_points, content.required_edges = required_items(mesh)
         files = target.save(path, content, **given)
     replace_files(files)
 

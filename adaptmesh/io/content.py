@@ -23,7 +23,7 @@ class Content:
     """Arrays and names of one file, not yet checked against one another.
 
     Points are (n, 2) or (n, 3); fields are at the points or at the triangles; the metric is
-    packed (m11, m12, m22).
+    packed (m11, m12, m22). What is required are vertex numbers and rows of the edges.
     """
 
     points: Array
@@ -36,6 +36,8 @@ class Content:
     point_fields: dict[str, Array] = field(default_factory=dict)
     triangle_fields: dict[str, Array] = field(default_factory=dict)
     metric: Array | None = None
+    required_points: Array = field(default_factory=lambda: np.empty(0, np.int64))
+    required_edges: Array = field(default_factory=lambda: np.empty(0, np.int64))
 
 
 def refuse_cells(counts: Mapping[str, int]) -> None:
@@ -66,6 +68,8 @@ def mesh_of(content: Content) -> Mesh:
     check_vertices("edge", edges, len(points))
     _refuse_duplicates("edge", edges)
     _edges_are_sides(edges, triangles, len(points))
+    _check_numbers("required vertex", content.required_points, len(points))
+    _check_numbers("required edge", content.required_edges, len(edges))
     return Mesh(
         points,
         triangles.astype(np.int32),
@@ -74,6 +78,8 @@ def mesh_of(content: Content) -> Mesh:
         edge_tags=_tags("edge tag", content.edge_tags),
         names=_named("edge tag", content.names),
         region_names=_named("region", content.region_names),
+        required_points=content.required_points,
+        required_edges=content.required_edges,
     )
 
 
@@ -111,6 +117,14 @@ def check_vertices(kind: str, cells: Array, count: int) -> None:
     bad = np.flatnonzero((sides[:, 1:] == sides[:, :-1]).any(axis=1))
     if len(bad):
         raise FormatError(f"{kind} {bad[0]} has a vertex twice: {cells[bad[0]].tolist()}")
+
+
+def _check_numbers(what: str, numbers: Array, count: int) -> None:
+    bad = np.flatnonzero((numbers < 0) | (numbers >= count))
+    if len(bad):
+        raise FormatError(
+            f"{what} {bad[0]} has number {numbers[bad[0]]}; there are 0 to {count - 1}"
+        )
 
 
 def check_finite(points: Array) -> None:

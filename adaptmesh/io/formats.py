@@ -26,11 +26,14 @@ class Format:
         none itself.
     options : frozenset of str
         The keywords of `save`.
+    required : bool
+        Whether it can tell which vertices and edges every mesh has to keep.
     """
 
     load: Callable[[Path, bool], Content]
     save: Callable[..., Mapping[Path, bytes]]
     options: frozenset[str] = frozenset()
+    required: bool = False
 
 
 def _load_vtu(path: Path, fields: bool) -> Content:
@@ -112,8 +115,8 @@ def _save_triangle(path: Path, content: Content) -> Mapping[Path, bytes]:
 FORMATS: dict[str, Format] = {
     ".vtu": Format(_load_vtu, _save_vtu),
     ".msh": Format(_load_gmsh, _save_gmsh, frozenset({"version", "binary"})),
-    ".mesh": Format(_load_medit, _save_medit),
-    ".meshb": Format(_load_medit, _save_medit),
+    ".mesh": Format(_load_medit, _save_medit, required=True),
+    ".meshb": Format(_load_medit, _save_medit, required=True),
     ".xdmf": Format(_load_xdmf, _save_xdmf),
     ".ele": Format(_load_triangle, _save_triangle),
 }

@@ -8,6 +8,8 @@ they are put where its readers skip them:
     .meshb  ReferenceStrings     libMeshb's keyword 199: keyword of the cells (5 edges,
                                  6 triangles), reference, name in 256 bytes of UTF-8
 
+What every mesh has to keep is in RequiredVertices (which Corners are, too, when read) and
+RequiredEdges; Ridges are edges that meet with an angle in space, and say nothing in the plane.
 Fields are in files of their own, see `adaptmesh.io.sol`. Source of the formats: libMeshb 7,
 <https://github.com/LoicMarechal/libMeshb>.
 
@@ -43,6 +45,7 @@ _OTHER_CELLS = {
     "Quadrilaterals": 5, "Tetrahedra": 5, "Prisms": 7, "Pyramids": 6, "Hexahedra": 9,
     "Hexaedra": 9, "TrianglesP2": 7, "EdgesP2": 4,
 }  # fmt: skip
+_REQUIRED = ("RequiredVertices", "RequiredEdges", "Corners")
 _NAME_BYTES = 256
 _COMMENT = re.compile(rb'#[ \t]*adaptmesh (edge|region) (-?\d{1,10}) (".*")[ \t\r]*$', re.MULTILINE)
 
@@ -55,6 +58,7 @@ def decode(data: bytes, *, binary: bool) -> Content:
     file = opened(data, binary=binary)
     names = {"edge": {}, "region": {}} if binary else _commented_names(data)
     dim, vertices, cells = 0, None, {}
+    required = dict.fromkeys(_REQUIRED, np.empty(0, np.int64))
     while (keyword := file.next_keyword()) != "End":
         with located(keyword):
             if keyword == "Dimension":
@@ -67,6 +71,8 @@ def decode(data: bytes, *, binary: bool) -> Content:
             elif keyword in _CELLS or keyword in _OTHER_CELLS:
                 width = _CELLS.get(keyword) or _OTHER_CELLS[keyword]
                 cells[keyword] = file.cursor.rows(count(file), (file.integer, width))[0]
+            elif keyword in _REQUIRED:
+                required[keyword] = file.cursor.rows(count(file), (file.integer, 1))[0][:, 0] - 1
             elif keyword == "ReferenceStrings" and binary:
                 _take_names(names, file)
             else:
@@ -84,6 +90,8 @@ def decode(data: bytes, *, binary: bool) -> Content:
         edges[:, 2],
         names=names["edge"],
         region_names=names["region"],
+        required_points=np.union1d(required["RequiredVertices"], required["Corners"]),
+        required_edges=required["RequiredEdges"],
     )
 
 
@@ -124,6 +132,8 @@ def encode(content: Content, *, binary: bool) -> bytes:
         ("Vertices", [("f8", content.points), ("i4", np.zeros(n, np.int32))]),
         ("Edges", [("i4", content.edges + 1), ("i4", content.edge_tags)]),
         ("Triangles", [("i4", content.triangles + 1), ("i4", content.regions)]),
+        ("RequiredVertices", [("i4", content.required_points[:, None] + 1)]),
+        ("RequiredEdges", [("i4", content.required_edges[:, None] + 1)]),
     ]
     keywords: list[Keyword] = [
         (name, [len(columns[0][1])], table(binary, *columns))

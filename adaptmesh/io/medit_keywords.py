@@ -16,7 +16,8 @@ from .records import BinaryCursor, Cursor, TextCursor, one, table
 
 NUMBERS = {
     "Dimension": 3, "Vertices": 4, "Edges": 5, "Triangles": 6, "Quadrilaterals": 7,
-    "Tetrahedra": 8, "Prisms": 9, "Hexahedra": 10, "TrianglesP2": 24, "EdgesP2": 25,
+    "Tetrahedra": 8, "Prisms": 9, "Hexahedra": 10, "Corners": 13,
+    "RequiredVertices": 15, "RequiredEdges": 16, "TrianglesP2": 24, "EdgesP2": 25,
     "Pyramids": 49, "End": 54, "SolAtVertices": 62, "SolAtTriangles": 64, "ReferenceStrings": 199,
 }  # fmt: skip
 """The number of each keyword that we know, in binary files."""

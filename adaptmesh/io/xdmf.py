@@ -320,6 +320,6 @@ def _names(domain: Element, what: str) -> dict[str, int]:
         try:
             names = json.loads(information.get("Value", ""))
             return {str(name): int(number) for name, number in names.items()}
-        except (ValueError, TypeError, AttributeError):
+        except (ValueError, TypeError, AttributeError, OverflowError):
             raise FormatError(f"the <Information> {what!r} does not hold names") from None
     return {}

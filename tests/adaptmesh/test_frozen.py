@@ -75,6 +75,28 @@ def test_regions_interfaces_and_isolated_points_are_kept():
     assert new.region_names == mesh.region_names
 
 
+@pytest.mark.parametrize("curved", [False, True])
+def test_what_is_frozen_in_the_domain_stays_so_beside_others(curved):
+    corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    names = {"bottom": [0], "right": [1], "left": [3]}
+    if curved:
+        lines = [Line(corners[k], corners[(k + 1) % 4]) for k in range(4)]
+        domain = am.Domain.from_curves([*lines, Circle((0.5, 0.5), 0.2)], names=names)
+    else:
+        domain = am.Domain(corners, [(0, 1), (1, 2), (2, 3), (3, 0)], names=names)
+    mesh = am.generate(domain.with_frozen("left"), 0.1)
+    new = am.adapt(mesh, 0.2, frozen=["right"])
+    assert [len(new.edges_named(n)) for n in ("left", "right", "bottom")] == [1, 10, 5]
+
+
+def test_segments_are_frozen_by_number():
+    square = am.Domain.rectangle(0, 0, 1, 1)
+    mesh = am.generate(square.with_frozen("left", segments=[1]), 0.2)
+    assert [len(mesh.edges_named(n)) for n in ("left", "right", "bottom")] == [1, 1, 5]
+    with pytest.raises(DomainError, match="segment 4: they are numbered 0 to 3"):
+        square.with_frozen(segments=[4])
+
+
 def test_frozen_and_periodic_together():
     domain = am.Domain.rectangle(0, 0, 1, 1).with_periodic("left", "right")
     mesh = am.generate(domain, lambda x: 0.02 + 0.2 * x[:, 1])
@@ -121,7 +143,7 @@ def test_what_cannot_be_frozen_is_named():
     with pytest.raises(DomainError, match="no boundary is named 'wall'"):
         am.adapt(am.generate(square, 0.3), 0.2, frozen=["wall"])
     disc = am.Domain.from_curves([Circle((0, 0), 1)], names={"rim": [0]})
-    with pytest.raises(DomainError, match="'rim' is curved"):
+    with pytest.raises(DomainError, match=r"curve 0 \(Circle .* is curved"):
         disc.with_frozen("rim")
     divided = am.Domain(
         [(0, 0), (1, 0), (1, 1), (0, 1), (0, 0.5)],
