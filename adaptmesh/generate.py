@@ -120,12 +120,22 @@ class Settling:
     most_places, most_places_share : int, float
         If there are more places to work on than the one plus this share of the vertices, nothing is
         done: then the metric is beyond what straight edges can follow, and they are no exceptions.
+    lifts : int
+        Rounds in which the worst triangles are made better, at the most.
+    lift_below : float
+        Those of lesser quality.
+    most_lifted, most_lifted_share : int, float
+        And no more of them at a time than the one plus this share of the vertices.
     """
 
     steps: tuple[float, ...] = (0.3, 0.15, 0.3, 0.15, 0.3, 0.15)
     least_quality: float = 0.6
     most_places: int = 1000
     most_places_share: float = 0.125
+    lifts: int = 4
+    lift_below: float = 0.55
+    most_lifted: int = 20
+    most_lifted_share: float = 0.002
 
 
 def generate(
@@ -385,14 +395,26 @@ def settle(mesher: _core.Mesher, field: ControlSpace, options: Settling, budget:
     for step in options.steps:
         places = mesher.find_sites(settler)
         most = options.most_places + options.most_places_share * mesher.vertex_count
-        if not 0 < places <= most:
+        if places > most:
             return
-        measure_edges(settler.sampler, field)
-        mesher.set_kernels(settler, field(mesher.propose(settler, step)))
-        measure_edges(settler.sampler, field)
-        if not mesher.accept(settler):
-            return
+        if not places or not settle_sites(mesher, settler, field, step):
+            break
         budget.check(mesher.vertex_count)
+    for _ in range(options.lifts):
+        most_lifted = int(options.most_lifted + options.most_lifted_share * mesher.vertex_count)
+        places = mesher.find_worst(settler, options.lift_below, most_lifted)
+        if not places or not settle_sites(mesher, settler, field):
+            return
+
+
+def settle_sites(
+    mesher: _core.Mesher, settler: _core.Settler, field: ControlSpace, step: float = 0.0
+) -> int:
+    """Measure the sites that were found, and what might take their place; how many changed."""
+    measure_edges(settler.sampler, field)
+    mesher.set_kernels(settler, field(mesher.propose(settler, step)))
+    measure_edges(settler.sampler, field)
+    return mesher.accept(settler)
 
 
 def finished_mesh(domain: Domain, mesher: _core.Mesher, regions: Ints) -> Mesh:

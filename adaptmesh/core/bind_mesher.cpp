@@ -288,6 +288,11 @@ class Mesher {
         return settler.find_sites();
     }
 
+    std::size_t find_worst(Settler& settler, double below, std::size_t most) {
+        nb::gil_scoped_release release;
+        return settler.find_worst(below, most);
+    }
+
     nb::object propose(Settler& settler, double step) {
         std::vector<double> points;
         {
@@ -450,6 +455,8 @@ void bind_mesher(nb::module_& m) {
              nb::arg("least_quality"), nb::arg("step"))
         .def("settler", &Mesher::settler, nb::arg("least_quality"), nb::keep_alive<0, 1>())
         .def("find_sites", &Mesher::find_sites, nb::arg("settler"))
+        .def("find_worst", &Mesher::find_worst, nb::arg("settler"), nb::arg("below"),
+             nb::arg("most"))
         .def("propose", &Mesher::propose, nb::arg("settler"), nb::arg("step"))
         .def("set_kernels", &Mesher::set_kernels, nb::arg("settler"), nb::arg("tensors"))
         .def("accept", &Mesher::accept, nb::arg("settler"))

@@ -15,8 +15,10 @@
 #include <vector>
 
 #include "adaptmesh/core/edges.hpp"
+#include "adaptmesh/core/faults.hpp"
 #include "adaptmesh/core/metric_mesh.hpp"
 #include "adaptmesh/core/star.hpp"
+#include "adaptmesh/core/star_model.hpp"
 #include "adaptmesh/core/swap.hpp"
 
 namespace adaptmesh {
@@ -34,21 +36,21 @@ class Settler {
   public:
     Settler(MetricMesh& mesh, double least_quality) : mesh_(mesh), least_quality_(least_quality) {}
 
-    // Finds the sites around what has changed; how many. Some of their edges want to be measured.
+    // Finds the sites around what has changed, to be given the least cost; how many. Some of their
+    // edges want to be measured.
     std::size_t find_sites() {
-        sites_.clear();
-        unmeasured_.clear();
-        std::vector<Index> edges;
-        std::vector<char> is_centre(mesh_.vertices.size(), 0);
-        find_faults(edges, is_centre);
-        for (Index code : edges) add_quad({triangle_of(code), slot_of(code)});
-        for (Index v = 0; v < Index(is_centre.size()); ++v) {
-            if (is_centre[v]) add_ball(v);
+        aim_ = Aim::least_cost;
+        return find_sites(take_changed_faults(mesh_, least_quality_));
+    }
+
+    // Finds the sites around the worst triangles, whose quality is to be raised.
+    std::size_t find_worst(double below, std::size_t most) {
+        if (aim_ != Aim::best_worst) {
+            for (Triangle& t : mesh_.topology.triangles) t.fresh |= TO_IMPROVE;
         }
-        sort_out(unmeasured_);
-        sampler_.clear();
-        for (auto [a, b] : unmeasured_) add_edge(mesh_.vertices[a], mesh_.vertices[b]);
-        return sites_.size();
+        aim_ = Aim::best_worst;
+        floor_ = below;
+        return find_sites(take_changed_worst(mesh_, below, most));
     }
 
     // Measures first the edges of sites, and then the spokes of proposals.
@@ -64,8 +66,10 @@ class Settler {
             if (i % 1024 == 0) poll();
             Site& site = sites_[i];
             const StarMeasure now = measured_now(site);
-            if (now.is_unit && now.worst_quality >= least_quality_) continue;
-            if (site.is_ball()) {
+            if (is_good(now)) continue;
+            if (site.is_ball() && aim_ == Aim::best_worst) {
+                propose_best_place(site);
+            } else if (site.is_ball()) {
                 propose_collapses(site);
                 propose_moves(site, step);
             } else {
@@ -110,13 +114,14 @@ class Settler {
         std::vector<Gain> gains;
         for (Index i = 0; i < Index(sites_.size()); ++i) {
             const Site& site = sites_[i];
-            const double now = measured_now(site).cost;
-            Gain best{WORTHWHILE * now, i, NONE};
+            const StarMeasure now = measured_now(site);
+            Gain best{least_gain(now), i, NONE};
             for (Index k = 0; k < Index(site.others.size()); ++k) {
                 const StarMeasure then = measured(site, site.others[k]);
                 const bool is_split = !site.is_ball() && site.others[k].vertex == NONE;
                 if (is_split && then.area < 4 * LEAST_AREA) continue;
-                if (now - then.cost > best.value) best = {now - then.cost, i, k};
+                const double value = gain(now, then);
+                if (value > best.value) best = {value, i, k};
             }
             if (best.star != NONE) gains.push_back(best);
         }
@@ -142,6 +147,36 @@ class Settler {
     static void sort_out(std::vector<T>& items) {
         std::sort(items.begin(), items.end());
         items.erase(std::unique(items.begin(), items.end()), items.end());
+    }
+
+    // What the changes are for.
+    enum class Aim { least_cost, best_worst };
+
+    std::size_t find_sites(const Faults& faults) {
+        sites_.clear();
+        unmeasured_.clear();
+        for (Index code : faults.edges) add_quad({triangle_of(code), slot_of(code)});
+        for (Index v = 0; v < Index(faults.is_centre.size()); ++v) {
+            if (faults.is_centre[v]) add_ball(v);
+        }
+        sort_out(unmeasured_);
+        sampler_.clear();
+        for (auto [a, b] : unmeasured_) add_edge(mesh_.vertices[a], mesh_.vertices[b]);
+        return sites_.size();
+    }
+
+    bool is_good(const StarMeasure& m) const {
+        if (aim_ == Aim::best_worst) return m.worst_quality >= floor_;
+        return m.off_unit == 0 && m.worst_quality >= least_quality_;
+    }
+
+    // What is gained by a change, and how much that must be at least.
+    double gain(const StarMeasure& now, const StarMeasure& then) const {
+        if (aim_ == Aim::least_cost) return now.cost - then.cost;
+        return then.nearly_off_unit > now.off_unit ? 0 : then.worst_quality - now.worst_quality;
+    }
+    double least_gain(const StarMeasure& now) const {
+        return WORTHWHILE * (aim_ == Aim::least_cost ? now.cost : 1);
     }
 
     // --- measuring ---------------------------------------------------------------------------
@@ -175,29 +210,6 @@ class Settler {
     }
 
     // --- sites -------------------------------------------------------------------------------
-
-    // Edges that are not unit and those of bad triangles, each as seen from one side; and the
-    // corners of all triangles beside them.
-    void find_faults(std::vector<Index>& edges, std::vector<char>& is_centre) {
-        for (Index t = 0; t < mesh_.topology.triangle_count(); ++t) {
-            Triangle& T = mesh_.topology.triangles[t];
-            if (!(T.fresh & TO_IMPROVE) || mesh_.topology.is_dead(t)) continue;
-            const bool is_bad = mesh_.quality(t) < least_quality_;
-            for (int slot = 0; slot < 3; ++slot) {
-                const Index across = T.n[slot];
-                const bool is_seen = across != NONE && triangle_of(across) < t &&
-                                     (mesh_.triangle(triangle_of(across)).fresh & TO_IMPROVE);
-                if (!is_bad && (is_seen || is_unit(mesh_.length(T.v[next(slot)], T.v[prev(slot)]))))
-                    continue;
-                for (Index v : T.v) is_centre[v] = 1;
-                if (across == NONE) continue;
-                is_centre[mesh_.triangle(triangle_of(across)).v[slot_of(across)]] = 1;
-                if (!is_locked(across)) edges.push_back(std::min(edge_code(t, slot), across));
-            }
-        }
-        for (Triangle& t : mesh_.topology.triangles) t.fresh &= ~TO_IMPROVE;
-        sort_out(edges);
-    }
 
     //         c
     //        / \            the edge (b, c) of (a, b, c): a star from b, which a flip
@@ -278,6 +290,15 @@ class Settler {
         }
     }
 
+    // Where the worst triangle would be best as far as can be told.
+    void propose_best_place(Site& site) {
+        const Point from = site.now.kernel.at;
+        const Point to = StarModel(mesh_, measures_, site.polygon, site.now.vertex).best_place();
+        if (to.x == from.x && to.y == from.y) return;
+        propose_at(site, to);
+        propose_at(site, {0.5 * (from.x + to.x), 0.5 * (from.y + to.y)});
+    }
+
     // From p along the vector (x, y) to the polygon, in lengths of it.
     double distance_to(const std::vector<Index>& polygon, Point p, double x, double y) const {
         double nearest = INFINITY;
@@ -335,6 +356,8 @@ class Settler {
 
     MetricMesh& mesh_;
     double least_quality_;
+    Aim aim_ = Aim::least_cost;
+    double floor_ = 0;
     Measures measures_;
     std::vector<Site> sites_;
     std::vector<std::pair<Index, Index>> unmeasured_;

@@ -34,8 +34,11 @@ struct StarCost {
     static double edge(double length) {
         const double ratio = ratio_to_unit(length), within = std::min(ratio, LONGEST_UNIT);
         const double u = within - 1 / within;
-        const double cost = u * u * (1 + 4 * u * u);
-        return ratio == within ? cost : cost + OFF_UNIT + FAR_OFF * std::log(ratio / within);
+        return u * u * (1 + 4 * u * u) + off_unit(ratio);
+    }
+    // The part of an edge's cost that is for not being unit.
+    static double off_unit(double ratio) {
+        return ratio <= LONGEST_UNIT ? 0 : OFF_UNIT + FAR_OFF * std::log(ratio / LONGEST_UNIT);
     }
     static double triangle(double quality) {
         const double u = 1 / std::max(quality, 1e-12) - 1;
@@ -126,10 +129,13 @@ class StarView {
 };
 
 struct StarMeasure {
+    static constexpr double ERROR = 0.01;  // of lengths as measured
+
     double cost = 0;
     double area = 0;
     double worst_quality = 1;
-    bool is_unit = true;  // all spokes
+    double off_unit = 0;         // cost of spokes for not being unit
+    double nearly_off_unit = 0;  // what it would be if all were longer, or shorter, by the error
 };
 
 // `edge_to(i)` is what was measured from the kernel to rim(i).
@@ -138,9 +144,10 @@ StarMeasure measure(const MetricMesh& mesh, const Measures& sides, const StarVie
                     const EdgeTo& edge_to) {
     StarMeasure out;
     for (int i = star.first_spoke(); i < star.end_of_spokes(); ++i) {
-        const double length = edge_to(i).length;
+        const double length = edge_to(i).length, ratio = ratio_to_unit(length);
         out.cost += StarCost::edge(length);
-        out.is_unit &= is_unit(length);
+        out.off_unit += StarCost::off_unit(ratio);
+        out.nearly_off_unit += StarCost::off_unit((1 + StarMeasure::ERROR) * ratio);
     }
     Measured left = edge_to(0);
     for (int i = 0; i < star.triangle_count(); ++i) {

@@ -109,6 +109,29 @@ def test_constraints_beside_a_jump_are_kept():
         assert np.linalg.norm(wall[:, 1] - wall[:, 0], axis=1).sum() == pytest.approx(1)
 
 
+def ridge(x):
+    """Anisotropic along a sine wave: axes turn within an edge where it bends."""
+    t = x[:, 1] - 0.5 - 0.2 * np.sin(2 * np.pi * x[:, 0])
+    slope = -0.4 * np.pi * np.cos(2 * np.pi * x[:, 0])
+    normal = np.stack([slope, np.ones(len(x))], axis=1) / np.hypot(slope, 1)[:, None]
+    fine, coarse = (0.004 + 0.1 * t**2) ** -2, 0.08**-2
+    a, b = normal.T
+    extra = np.maximum(fine - coarse, 0)
+    return np.stack([coarse + extra * a * a, extra * a * b, coarse + extra * b * b], axis=1)
+
+
+@pytest.mark.parametrize("coarser", [1.0, 1.5])
+def test_the_worst_triangles_are_lifted(monkeypatch, coarser):
+    """And no edge is given up for that."""
+    metric = lambda x: ridge(x) / coarser  # noqa: E731
+    after = am.measure(am.generate(SQUARE, metric), metric)
+    options = generate.Settling(lifts=0)
+    monkeypatch.setattr(generate, "Settling", lambda: options)
+    before = am.measure(am.generate(SQUARE, metric), metric)
+    assert after.quality_min > before.quality_min + 0.02
+    assert after.unit_fraction >= before.unit_fraction
+
+
 def test_where_most_edges_are_off_nothing_is_tried(monkeypatch):
     """A metric that turns by far more than a right angle within each edge."""
 

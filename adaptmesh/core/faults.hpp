@@ -1,0 +1,109 @@
+// Where the last rounds are to work: at edges that are not unit and at bad triangles.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "adaptmesh/core/metric_mesh.hpp"
+#include "adaptmesh/core/star.hpp"
+
+namespace adaptmesh {
+
+struct Faults {
+    std::vector<Index> edges;     // codes, each seen from one side
+    std::vector<char> is_centre;  // of each vertex, whether its ball is to be worked on
+
+    explicit Faults(const MetricMesh& mesh) : is_centre(mesh.vertices.size(), 0) {}
+
+    void add_corners(const Triangle& t) {
+        for (Index v : t.v) is_centre[v] = 1;
+    }
+    void add_edge(const MetricMesh& mesh, Place edge) {
+        const Index across = mesh.triangle(edge.triangle).n[edge.slot];
+        if (is_locked(across)) return;
+        edges.push_back(std::min(edge_code(edge.triangle, edge.slot), across));
+    }
+    void sort_out() {
+        std::sort(edges.begin(), edges.end());
+        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    }
+};
+
+// Of what has changed since the last call: edges that are not unit and those of bad triangles, and
+// the corners of all triangles beside them.
+inline Faults take_changed_faults(MetricMesh& mesh, double least_quality) {
+    Faults out(mesh);
+    for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
+        const Triangle& T = mesh.triangle(t);
+        if (!(T.fresh & TO_IMPROVE) || mesh.topology.is_dead(t)) continue;
+        const bool is_bad = mesh.quality(t) < least_quality;
+        for (int slot = 0; slot < 3; ++slot) {
+            const Index across = T.n[slot];
+            const bool is_seen = across != NONE && triangle_of(across) < t &&
+                                 (mesh.triangle(triangle_of(across)).fresh & TO_IMPROVE);
+            if (!is_bad && (is_seen || is_unit(mesh.length(T.v[next(slot)], T.v[prev(slot)]))))
+                continue;
+            out.add_corners(T);
+            if (across != NONE)
+                out.is_centre[mesh.triangle(triangle_of(across)).v[slot_of(across)]] = 1;
+            out.add_edge(mesh, {t, slot});
+        }
+    }
+    for (Triangle& t : mesh.topology.triangles) t.fresh &= ~TO_IMPROVE;
+    out.sort_out();
+    return out;
+}
+
+// The quality of a triangle as far as the mesh knows it: with lengths that were measured, and the
+// density sqrt(det M) of the corners in the geometric mean. The determinant of their mean metric,
+// which is good enough for comparing triangles with each other, is far too large where axes turn
+// from corner to corner: a bad triangle would pass for a good one.
+inline double estimated_quality(const MetricMesh& mesh, Index t) {
+    const auto& v = mesh.triangle(t).v;
+    const double density = std::cbrt(mesh.vertices[v[0]].sqrt_det * mesh.vertices[v[1]].sqrt_det *
+                                     mesh.vertices[v[2]].sqrt_det);
+    return quality(density * mesh.euclidean_area(t), mesh.length(v[0], v[1]),
+                   mesh.length(v[1], v[2]), mesh.length(v[2], v[0]));
+}
+
+// Whether estimated_quality can be so low: a quicker look, with the sides in the mean metric of the
+// corners, which are not far from their lengths.
+inline bool may_be_below(const MetricMesh& mesh, Index t, double quality) {
+    constexpr double SAFETY = 1.5;
+    const auto& v = mesh.triangle(t).v;
+    const Vertex &a = mesh.vertices[v[0]], &b = mesh.vertices[v[1]], &c = mesh.vertices[v[2]];
+    const double ux = b.at.x - a.at.x, uy = b.at.y - a.at.y;
+    const double vx = c.at.x - a.at.x, vy = c.at.y - a.at.y;
+    const Tensor m = a.metric + b.metric + c.metric;
+    const double sides = m.q(ux, uy) + m.q(vx, vy) + m.q(vx - ux, vy - uy);
+    const double area = 6 * std::sqrt(3.0) * (ux * vy - uy * vx);
+    const double bound = SAFETY * quality * sides;
+    return area * area * area * (a.sqrt_det * b.sqrt_det * c.sqrt_det) < bound * bound * bound;
+}
+
+// Of what has changed since the last call: the worst triangles below a quality, so many at most,
+// with their edges and corners.
+inline Faults take_changed_worst(MetricMesh& mesh, double below, std::size_t most) {
+    std::vector<std::pair<double, Index>> bad;
+    for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
+        Triangle& T = mesh.topology.triangles[t];
+        if (!(T.fresh & TO_IMPROVE) || mesh.topology.is_dead(t)) continue;
+        const double quality = may_be_below(mesh, t, below) ? estimated_quality(mesh, t) : 1.0;
+        if (quality < below) bad.push_back({quality, t});
+        T.fresh &= ~TO_IMPROVE;
+    }
+    std::sort(bad.begin(), bad.end());
+    if (bad.size() > most) bad.resize(most);
+    Faults out(mesh);
+    for (auto [quality, t] : bad) {
+        out.add_corners(mesh.triangle(t));
+        for (int slot = 0; slot < 3; ++slot) out.add_edge(mesh, {t, slot});
+    }
+    out.sort_out();
+    return out;
+}
+
+}  // namespace adaptmesh
