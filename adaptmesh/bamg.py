@@ -6,14 +6,16 @@
     Vertices 4                  x y reference, by row
     Edges 4                     vertex vertex reference
     Corners 1                   vertices where edges meet with an angle
+    RequiredVertices 1          vertices
+    RequiredEdges 1             edges
     TangentAtEdges 1            edge, its first or second end (1 or 2), direction
     SubDomain 1                 2, edge, side (1: left, -1: right), reference
 
 At a vertex that is no corner (two edges meet there and turn by less than the bound), each edge has
 the direction of the line from one neighbour to the other. With such a tangent, made as long as the
-edge, an edge is the cubic of Hermite; with one at one end only a parabola. Sizes at the vertices
-are not used, nor is which vertices and edges are required. Lines may follow in any order, and
-``End`` may be missing.
+edge, an edge is the cubic of Hermite; with one at one end only a parabola. A required vertex is one
+of every mesh, on a smooth line, too; a required edge is straight, and one edge of every mesh. Sizes
+at the vertices are not used. Lines may follow in any order, and ``End`` may be missing.
 """
 
 from __future__ import annotations
@@ -67,6 +69,8 @@ class _Geometry:
     edges: Integers = field(default_factory=lambda: np.empty((0, 2), np.int64))
     tags: Integers = field(default_factory=lambda: np.empty(0, np.int64))
     corners: Integers = field(default_factory=lambda: np.empty(0, np.int64))
+    required_vertices: Integers = field(default_factory=lambda: np.empty(0, np.int64))
+    required_edges: Integers = field(default_factory=lambda: np.empty(0, np.int64))
     tangent_ends: Integers = field(default_factory=lambda: np.empty((0, 2), np.int64))
     tangents: Floats = field(default_factory=lambda: np.empty((0, 2)))
     subdomains: Integers = field(default_factory=lambda: np.empty((0, 4), np.int64))
@@ -99,6 +103,8 @@ class _Geometry:
         for what, numbers, count, among in (
             ("Edges", self.edges, n, "vertices"),
             ("Corners", self.corners[:, None], n, "vertices"),
+            ("RequiredVertices", self.required_vertices[:, None], n, "vertices"),
+            ("RequiredEdges", self.required_edges[:, None], k, "edges"),
             ("TangentAtEdges", self.tangent_ends[:, :1], k, "edges"),
             ("TangentAtEdges", self.tangent_ends[:, 1:], 2, "ends of an edge"),
             ("SubDomain", self.subdomains[:, 1:2], k, "edges"),
@@ -149,6 +155,7 @@ class _Geometry:
             if _turn(here - before, after - here) <= self.corner_angle:
                 out[e, i] = out[f, j] = after - before
         out[self.tangent_ends[:, 0], self.tangent_ends[:, 1]] = self.tangents
+        out[self.required_edges] = 0
         return out
 
     # -- the domain
@@ -157,16 +164,17 @@ class _Geometry:
         curves = self.curves()
         names = labelled(self.tags)
         lone = np.setdiff1d(np.arange(len(self.vertices)), self.edges)
-        points = self.vertices[lone]
+        points = self.vertices[np.union1d(lone, self.required_vertices)]
         everything = Domain.from_curves(
             curves, names=names, holes=(), points=points, corner_angle=SMOOTH
         )
+        frozen = np.flatnonzero(np.isin(everything.curved.segment_curves, self.required_edges))
         if not len(self.subdomains):
-            return everything
+            return everything.with_frozen(segments=frozen)
         holes, regions = self._seeds(curves)
         return Domain.from_curves(
             curves, names=names, holes=holes, regions=regions, points=points, corner_angle=SMOOTH
-        )
+        ).with_frozen(segments=frozen)
 
     def _seeds(self, curves: list[Curve]) -> tuple[Floats, dict[Label, Floats]]:
         """Points in what subdomains leave out, and in each region."""
@@ -240,7 +248,19 @@ def _read_edges(geometry: _Geometry, cursor: TextCursor) -> None:
 
 
 def _read_corners(geometry: _Geometry, cursor: TextCursor) -> None:
-    geometry.corners = cursor.rows(_count(cursor), ("i8", 1))[0][:, 0] - 1
+    geometry.corners = _numbers(cursor)
+
+
+def _read_required_vertices(geometry: _Geometry, cursor: TextCursor) -> None:
+    geometry.required_vertices = _numbers(cursor)
+
+
+def _read_required_edges(geometry: _Geometry, cursor: TextCursor) -> None:
+    geometry.required_edges = _numbers(cursor)
+
+
+def _numbers(cursor: TextCursor) -> Integers:
+    return cursor.rows(_count(cursor), ("i8", 1))[0][:, 0] - 1
 
 
 def _read_tangents(geometry: _Geometry, cursor: TextCursor) -> None:
@@ -260,6 +280,8 @@ _READERS: dict[str, Callable[[_Geometry, TextCursor], None]] = {
     "Vertices": _read_vertices,
     "Edges": _read_edges,
     "Corners": _read_corners,
+    "RequiredVertices": _read_required_vertices,
+    "RequiredEdges": _read_required_edges,
     "TangentAtEdges": _read_tangents,
     "SubDomain": _read_subdomains,
     "SubDomainFromGeom": _read_subdomains,

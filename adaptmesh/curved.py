@@ -15,7 +15,7 @@ from .chords import Surroundings, chords_along, name_of_curve
 from .curves import Curve
 from .domain_input import Floats, Inside, Ints, read_only
 from .errors import DomainError
-from .runs import Run, join, points_on
+from .runs import Run, are_near, join, points_on
 
 JOINED = 1e-12
 """Ends of curves that are nearer than this share of the extent are one, if nothing else is said."""
@@ -176,7 +176,8 @@ def skeleton_of(
         )
     if not 0 <= corner_angle <= 180:
         raise DomainError(f"corner_angle={corner_angle}: degrees from 0 to 180 are wanted")
-    joined = join(curves, tags, corner_angle, join_tolerance)
+    joined = join(curves, tags, corner_angle, join_tolerance, isolated)
+    isolated = isolated[~are_near(isolated, joined.corners, join_tolerance)]
     vertices = np.concatenate([joined.corners, isolated])
     lines, line_curves = _divided(vertices, joined.lines, joined.line_curves)
     around = Surroundings(

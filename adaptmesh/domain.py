@@ -181,7 +181,8 @@ class Domain:
         holes, regions, tags, region_tags
             As in `Domain`.
         points : (m, 2) array_like
-            Isolated points inside the domain, which become vertices.
+            Isolated points inside the domain, which become vertices. One where curves end makes
+            that a vertex, too, be it smooth or not.
         corner_angle : float
             In degrees. Two curves of one name that meet with a turn of at most this are one smooth
             line, and where they meet is no vertex, unless both are straight. All other ends of

@@ -60,13 +60,12 @@ def _of_curves(domain: Domain, edges: dict[str, Floats], rest: NDArray[np.bool_]
     curves += [curved.curves[i] for i in kept]
     tags = [domain.names[name] for name, ends in edges.items() for _ in ends]
     tags += [tag_of[i] for i in kept.tolist()]
-    isolated = np.setdiff1d(np.flatnonzero(curved.is_vertex), domain.segments)
     out = Domain.from_curves(
         curves,
         names={n: np.flatnonzero(np.array(tags) == t).tolist() for n, t in domain.names.items()},
         holes="nesting" if domain.nesting else domain.holes,
         regions=_regions(domain),
-        points=domain.points[isolated],
+        points=domain.points[curved.is_vertex],
         corner_angle=curved.corner_angle,
         join_tolerance=curved.join_tolerance,
     )

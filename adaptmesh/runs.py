@@ -129,7 +129,9 @@ class Joined(NamedTuple):
     runs: tuple[Run, ...]
 
 
-def join(curves: Sequence[Curve], tags: Ints, corner_angle: float, tolerance: float) -> Joined:
+def join(
+    curves: Sequence[Curve], tags: Ints, corner_angle: float, tolerance: float, stops: Floats
+) -> Joined:
     """Find corners, straight lines and runs.
 
     Parameters
@@ -141,6 +143,8 @@ def join(curves: Sequence[Curve], tags: Ints, corner_angle: float, tolerance: fl
         Where a line turns by more than this, in degrees, is a corner.
     tolerance : float
         Ends nearer than this are one.
+    stops : (m, 2) array
+        Where ends are corners, be they smooth or not.
     """
     pieces = _pieces(curves)
     ends = np.concatenate([_ends(curves, pieces, 0), _ends(curves, pieces, 1)])
@@ -148,7 +152,11 @@ def join(curves: Sequence[Curve], tags: Ints, corner_angle: float, tolerance: fl
     at: list[list[int]] = [[] for _ in range(node.max() + 1)]
     for e, v in enumerate(node.tolist()):
         at[v].append(e)
-    is_corner = [_is_corner(curves, tags, pieces, found, corner_angle) for found in at]
+    stopped = set(node[are_near(ends, stops, tolerance)].tolist())
+    is_corner = [
+        v in stopped or _is_corner(curves, tags, pieces, found, corner_angle)
+        for v, found in enumerate(at)
+    ]
     chains = _chains(node.tolist(), at, is_corner, len(pieces))
 
     number = np.cumsum(is_corner) - 1
@@ -203,6 +211,17 @@ def places_of(ends: Floats, tolerance: float) -> NDArray[np.intp]:
     graph = coo_array((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(n, n))
     label: NDArray[np.intp] = connected_components(graph, directed=False)[1]
     return label
+
+
+def are_near(points: Floats, places: Floats, tolerance: float) -> NDArray[np.bool_]:
+    """Which of the points (n, 2) are within the tolerance of one of the places (m, 2)."""
+    from scipy.spatial import KDTree
+
+    if not len(places):
+        return np.zeros(len(points), bool)
+    distance, _ = KDTree(places).query(points)
+    out: NDArray[np.bool_] = distance <= tolerance
+    return out
 
 
 # Ends are numbered: e < n is where piece e begins, e >= n where piece e - n ends. To walk a piece

@@ -176,6 +176,19 @@ def test_refused_with_the_place(curves, says):
         Domain.from_curves(curves)
 
 
+def test_a_point_where_smooth_curves_join_stays_a_vertex():
+    rim = [Arc((0, 0), 1, 0, np.pi), Arc((0, 0), 1, np.pi, 2 * np.pi)]
+    for points, count in (([], 1), ([(-1, 0)], 1), ([(-1, 0), (0.2, 0.3)], 2)):
+        domain = Domain.from_curves(
+            [*rim, Line((-0.3, -0.3), (0.3, -0.3))], points=points, names={"slit": [2]}
+        )
+        assert domain.curved.is_vertex.sum() == count + 2
+        mesh = am.generate(domain, 0.3)
+        for new in (mesh, am.adapt(mesh, 0.9), am.adapt(mesh, 0.9, frozen=["slit"])):
+            assert new.validate().ok
+            assert set(points) <= set(map(tuple, np.round(new.points, 12).tolist()))
+
+
 @pytest.mark.parametrize(
     ("options", "says"),
     [
@@ -185,7 +198,7 @@ def test_refused_with_the_place(curves, says):
         ({"holes": [(5, 5)]}, "hole 0"),
         ({"regions": {"a": (5, 5)}}, "region 'a'"),
         ({"points": [(5, 5)]}, r"\(5, 5\)"),
-        ({"points": [(1, 0)]}, r"\(1, 0\)"),
+        ({"points": [(0, 1)]}, r"\(0, 1\)"),
         ({"corner_angle": -1}, "corner_angle"),
         ({"corner_angle": np.nan}, "corner_angle"),
         ({"join_tolerance": 7}, "join_tolerance"),
