@@ -254,13 +254,16 @@ class Mesher {
 
     Index swap_worst(double below) {
         nb::gil_scoped_release release;
-        for (Triangle& t : mesh_.topology.triangles) t.fresh |= TO_SWAP;
+        for (Index t = 0; t < mesh_.topology.triangle_count(); ++t) {
+            if (!mesh_.topology.is_dead(t) && mesh_.quality(t) < below)
+                mesh_.topology.triangles[t].fresh |= TO_SWAP;
+        }
         return swap_changed(mesh_, QualityCriterion{below}, 3, poll_);
     }
 
     Index smooth() {
         nb::gil_scoped_release release;
-        return smooth_everywhere(mesh_, poll_);
+        return smooth_changed(mesh_, poll_);
     }
 
     Index collapse_short_edges() {

@@ -23,6 +23,10 @@ constexpr double LONGEST_CHORD = 4.0;
 // Longer ones are cut into about so many parts, and what is left of them in the next sweep.
 constexpr double LONGEST_EDGE = 16;
 
+// Edges within these lengths are well within unit; see is_known.
+constexpr double SHORTEST_KNOWN = 0.85;
+constexpr double LONGEST_KNOWN = 1.2;
+
 // Edges handed out for measuring.
 struct EdgesToMeasure {
     EdgeSampler sampler;
@@ -30,31 +34,44 @@ struct EdgesToMeasure {
 
     void reserve(std::size_t n) { sampler.reserve(n), a.reserve(n), b.reserve(n); }
 
-    void add(const MetricMesh& mesh, Place edge) {
-        const Triangle& T = mesh.triangle(edge.triangle);
-        a.push_back(T.v[next(edge.slot)]);
-        b.push_back(T.v[prev(edge.slot)]);
-        const Vertex &from = mesh.vertices[a.back()], &to = mesh.vertices[b.back()];
+    void add(const MetricMesh& mesh, Index start, Index end) {
+        a.push_back(start);
+        b.push_back(end);
+        const Vertex &from = mesh.vertices[start], &to = mesh.vertices[end];
         sampler.add(from.at, from.metric, to.at, to.metric);
     }
 };
 
-// The interior edges that appeared since the last call. With `to_cut`, they can be cut from that
-// length on; without, only be measured, those far from unit roughly.
+// Whether an edge need not be measured (again) because nothing will be decided by it: it is well
+// within unit by its ends, and these have told the truth of every edge that was measured there.
+inline bool is_known(const MetricMesh& mesh, Index a, Index b) {
+    if (mesh.corrections.any_at(a) || mesh.corrections.any_at(b)) return false;
+    const double length = MetricMesh::length(mesh.vertices[a], mesh.vertices[b]);
+    return length > SHORTEST_KNOWN && length < LONGEST_KNOWN;
+}
+
+// The interior edges that appeared since the last call. With `to_cut` all, and they can be cut from
+// that length on; without, those that are not known, only to be measured, and roughly if they are
+// far from unit.
 inline EdgesToMeasure take_fresh_edges(MetricMesh& mesh, double to_cut) {
-    const double longest = to_cut < INFINITY ? LONGEST_EDGE : LONGEST_CHORD;
+    const bool can_be_cut = to_cut < INFINITY;
+    const double longest = can_be_cut ? LONGEST_EDGE : LONGEST_CHORD;
     EdgesToMeasure out{EdgeSampler(LONGEST_CHORD, longest, to_cut), {}, {}};
     auto& triangles = mesh.topology.triangles;
-    const auto fresh = std::count_if(triangles.begin(), triangles.end(),
-                                     [](const Triangle& t) { return t.fresh & TO_MEASURE; });
-    out.reserve(3 * std::size_t(fresh) / 2);
+    if (can_be_cut) {
+        const auto fresh = std::count_if(triangles.begin(), triangles.end(),
+                                         [](const Triangle& t) { return t.fresh & TO_MEASURE; });
+        out.reserve(3 * std::size_t(fresh) / 2);
+    }
     for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
         if (!(triangles[t].fresh & TO_MEASURE) || mesh.topology.is_dead(t)) continue;
         for (int slot = 0; slot < 3; ++slot) {
             const Index across = triangles[t].n[slot];
             // An edge is new only if both its triangles are; each edge is met twice.
             if (is_locked(across) || triangle_of(across) > t) continue;
-            if (triangles[triangle_of(across)].fresh & TO_MEASURE) out.add(mesh, {t, slot});
+            if (!(triangles[triangle_of(across)].fresh & TO_MEASURE)) continue;
+            const Index a = triangles[t].v[next(slot)], b = triangles[t].v[prev(slot)];
+            if (can_be_cut || !is_known(mesh, a, b)) out.add(mesh, a, b);
         }
     }
     for (Triangle& t : triangles) t.fresh &= ~TO_MEASURE;

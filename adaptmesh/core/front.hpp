@@ -30,6 +30,7 @@ struct FrontOptions {
     double target = 1.0;    // length of the sides to be made, before book-keeping
     double lowest = 0.6;    // height of the new triangle, at least and ...
     double highest = 1.26;  // ... at most
+    double taken = 0.75;    // one that is expected to be nearer is not even asked about
     double settled = 0.01;  // a point that would move less than this stays where it is
     int trials = 3;         // how often a point is asked about, at most
 };
@@ -48,6 +49,8 @@ class Front {
     // Accepts what it can, and finds where points are wanted: how many.
     template <typename Poll>
     std::size_t advance(Poll& poll) {
+        for (const Wanted& w : wanted_) last_wanted_[w.edge.a] = last_wanted_[w.edge.b] = NONE;
+        last_wanted_.resize(mesh_.vertices.size(), NONE);
         wanted_.clear();
         books_.age();
         for (std::size_t i = 0; i < edges_.size(); ++i) {  // grows on the way
@@ -120,7 +123,7 @@ class Front {
         Edge edge;
         Point at;
         Index near;     // the triangle it lies in, NONE if it is out of sight
-        Tensor metric;  // at the place, as soon as it is known
+        Tensor metric;  // at the place, as soon as it is known; until then what is expected
     };
 
     // Triangles accepted of late, and how many unit triangles their metric area is worth. Where the
@@ -148,6 +151,7 @@ class Front {
     }
 
     void consider(Edge e) {
+        if (has_asked(e)) return;
         const Place place = mesh_.topology.find_edge(e.a, e.b);
         if (place.triangle == NONE) return;
         Triangle& T = mesh_.topology.triangles[place.triangle];
@@ -160,8 +164,38 @@ class Front {
             edges_.push_back({e.a, c});
             return;
         }
-        Wanted w{e, apex(e, expected_metric(e, T.n[place.slot])), place.triangle, {}};
-        if (is_in_sight(w)) wanted_.push_back(w);
+        const Tensor ahead = expected_metric(e, T.n[place.slot]);
+        Wanted w{e, apex(e, ahead), place.triangle, ahead};
+        if (is_wanted_already(w) || !is_in_sight(w) || is_at_corner(w)) return;
+        last_wanted_[e.a] = last_wanted_[e.b] = Index(wanted_.size());
+        wanted_.push_back(w);
+    }
+
+    // An edge may come twice in a layer, on its own and as a side of a triangle that is accepted.
+    bool has_asked(Edge e) const {
+        const Index k = last_wanted_[e.a];
+        return k != NONE && wanted_[k].edge.a == e.a && wanted_[k].edge.b == e.b;
+    }
+
+    // Whether a neighbour along the front wants a point in about the same place: only the first of
+    // them would be put in.
+    bool is_wanted_already(const Wanted& w) const {
+        const Vertex p = Vertex::make(w.at, w.metric);
+        const auto is_near = [&](Index k) {
+            if (k == NONE) return false;
+            const Wanted& other = wanted_[k];
+            return MetricMesh::length(p, Vertex::make(other.at, other.metric)) < options_.taken;
+        };
+        return is_near(last_wanted_[w.edge.a]) || is_near(last_wanted_[w.edge.b]);
+    }
+
+    // Whether there is a vertex already in about the same place.
+    bool is_at_corner(const Wanted& w) const {
+        const Vertex p = Vertex::make(w.at, w.metric);
+        for (Index v : mesh_.triangle(w.near).v) {
+            if (MetricMesh::length(p, mesh_.vertices[v]) < options_.taken) return true;
+        }
+        return false;
     }
 
     // The metric expected ahead of an edge, as far as vertex d is behind it: that of its middle and
@@ -218,7 +252,8 @@ class Front {
     Books books_;
     std::vector<Edge> edges_;
     std::vector<Wanted> wanted_;
-    std::vector<std::size_t> open_;  // those of wanted_ that are asked about
+    std::vector<std::size_t> open_;   // those of wanted_ that are asked about
+    std::vector<Index> last_wanted_;  // by an edge at each vertex
     int trial_ = 0;
 };
 

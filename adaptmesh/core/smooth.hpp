@@ -59,6 +59,9 @@ class Smoother {
         return false;
     }
 
+    // Of the vertex last moved; one of them twice.
+    const std::vector<Index>& neighbours() const { return sides_; }
+
     // Looks around in six directions, `step` metric units away, and takes the first that lowers the
     // cost; then once more with half the step. For the few vertices where the ideal is of no help.
     bool search_around(Index v, double step) {
@@ -207,14 +210,24 @@ class Smoother {
     Tensor start_log_{};
 };
 
-// One pass of move_to_ideal over all vertices; returns how many moved.
+// One pass of move_to_ideal over the vertices around which something has changed since the last:
+// the others would stay where they stayed then. Returns how many moved.
 template <typename Poll>
-Index smooth_everywhere(MetricMesh& mesh, Poll& poll) {
+Index smooth_changed(MetricMesh& mesh, Poll& poll) {
+    std::vector<char> is_due(mesh.vertices.size(), 0);
+    for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
+        Triangle& T = mesh.topology.triangles[t];
+        if (!(T.fresh & TO_SMOOTH) || mesh.topology.is_dead(t)) continue;
+        T.fresh &= ~TO_SMOOTH;
+        for (Index v : T.v) is_due[v] = 1;
+    }
     Smoother smoother(mesh);
     Index moved = 0;
     for (Index v = 0; v < Index(mesh.vertices.size()); ++v) {
         if (v % 1024 == 0) poll();
-        moved += smoother.move_to_ideal(v);
+        if (!is_due[v] || !smoother.move_to_ideal(v)) continue;
+        ++moved;
+        for (Index w : smoother.neighbours()) is_due[w] = 1;  // those before v, in the next pass
     }
     return moved;
 }

@@ -61,14 +61,15 @@ enum Fresh : std::uint32_t {
     TO_IMPROVE = 2,
     TO_ADVANCE = 4,
     TO_SWAP = 8,
-    CHANGED = 15
+    TO_SMOOTH = 16,
+    CHANGED = 31
 };
 
 struct Triangle {
     Index v[3];
     Index n[3];
-    std::uint32_t stamp : 28;  // visit mark of searches, see Triangulation::new_stamp
-    std::uint32_t fresh : 4;   // who has not yet seen its last change, see Fresh
+    std::uint32_t stamp : 27;  // visit mark of searches, see Triangulation::new_stamp
+    std::uint32_t fresh : 5;   // who has not yet seen its last change, see Fresh
     Index label;               // region, or a mark of the algorithm at work
 
     int slot_of_vertex(Index vertex) const { return v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2; }
@@ -359,7 +360,7 @@ class Triangulation {
 
     // A visit mark no triangle bears.
     std::uint32_t new_stamp() {
-        if (++stamp_ == std::uint32_t(1) << 28) {  // wrapped
+        if (++stamp_ == std::uint32_t(1) << 27) {  // wrapped
             for (Triangle& t : triangles) t.stamp = 0;
             stamp_ = 1;
         }

@@ -103,7 +103,7 @@ class MesherRun {
     void improve() {
         swap(5);
         for (int k = 0; k < 2; ++k) {
-            smooth_everywhere(mesh, poll_);
+            smooth_changed(mesh, poll_);
             refresh();
             swap(5);
         }
