@@ -132,10 +132,10 @@ class Settling:
     least_quality: float = 0.6
     most_places: int = 1000
     most_places_share: float = 0.125
-    lifts: int = 4
-    lift_below: float = 0.55
+    lifts: int = 6
+    lift_below: float = 0.8
     most_lifted: int = 20
-    most_lifted_share: float = 0.002
+    most_lifted_share: float = 0.004
 
 
 def generate(

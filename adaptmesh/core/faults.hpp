@@ -84,19 +84,24 @@ inline bool may_be_below(const MetricMesh& mesh, Index t, double quality) {
     return area * area * area * (a.sqrt_det * b.sqrt_det * c.sqrt_det) < bound * bound * bound;
 }
 
-// Of what has changed since the last call: the worst triangles below a quality, so many at most,
-// with their edges and corners.
+// Of what has changed, or was passed over, since the last call: the worst triangle if it is below a
+// quality, and others that are not much better, so many at most; with their edges and corners.
 inline Faults take_changed_worst(MetricMesh& mesh, double below, std::size_t most) {
+    constexpr double NOT_MUCH = 0.1;
     std::vector<std::pair<double, Index>> bad;
     for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
         Triangle& T = mesh.topology.triangles[t];
         if (!(T.fresh & TO_IMPROVE) || mesh.topology.is_dead(t)) continue;
         const double quality = may_be_below(mesh, t, below) ? estimated_quality(mesh, t) : 1.0;
-        if (quality < below) bad.push_back({quality, t});
-        T.fresh &= ~TO_IMPROVE;
+        if (quality < below)
+            bad.push_back({quality, t});
+        else
+            T.fresh &= ~TO_IMPROVE;
     }
     std::sort(bad.begin(), bad.end());
+    while (!bad.empty() && bad.back().first > bad.front().first + NOT_MUCH) bad.pop_back();
     if (bad.size() > most) bad.resize(most);
+    for (auto [quality, t] : bad) mesh.topology.triangles[t].fresh &= ~TO_IMPROVE;
     Faults out(mesh);
     for (auto [quality, t] : bad) {
         out.add_corners(mesh.triangle(t));
