@@ -2,6 +2,7 @@
 
 import pytest
 
+import adaptmesh as am
 from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.polyfile import read_poly
 
@@ -75,7 +76,7 @@ def test_truncated_anywhere_is_an_error(poly, n_lines):
         ("8 2 0 1", "-8 2 0 1", "line 2: -8 is not a number of points"),
         ("5  1 1  0", "6  1 1  0", "line 7: the points are not numbered"),
         ("5  1 1  0", "5  1 one  0", "line 7: point 4 of 8 should be finite numbers"),
-        ("5  1 1  0   #", "5  1   #", "line 7: point 4 of 8 needs at least 3"),
+        ("5  1 1  0   #", "5  1   #", "line 7: point 4 of 8 needs at least 4"),
         ("5  5 6  7", "5  5 9  7", "line 16: segment 4 ends in point 9; there are points 1 to 8"),
         ("5  5 6  7", "5  5 6", "line 16: segment 4 of 8 needs at least 4"),
         ("1  0.5 0.5  12.5 -1", "1  0.5 0.5", "line 23: region 0 of 1 needs at least 4"),
@@ -98,3 +99,11 @@ def test_missing_and_binary_files(tmp_path):
     (tmp_path / "binary.poly").write_bytes(bytes(range(256)))
     with pytest.raises(FormatError, match="not a text file"):
         read_poly(tmp_path / "binary.poly")
+
+
+def test_names_that_we_wrote_come_back(tmp_path):
+    mesh = am.generate(am.Domain.rectangle(0, 0, 1, 1), 0.3)
+    am.write(tmp_path / "a.ele", mesh)
+    domain = am.read_domain(tmp_path / "a.poly")
+    assert domain.area == pytest.approx(1)
+    assert dict(domain.names) == dict(mesh.names)
