@@ -44,7 +44,7 @@ def adapt_loop(
     h_max: float | None = None,
     max_anisotropy: float = np.inf,
     gradation: float | None = 2.0,
-    recovery: str = "least squares",
+    recovery: str = "green",
     combine: str = "intersection",
     growth: float = 4.0,
     order: float = 1.0,
@@ -91,7 +91,10 @@ def adapt_loop(
         Bounds on sizes, their ratio and their growth; see `metrics.Limits`. By default `h_max` is
         a quarter of the larger extent of the mesh: derivatives cannot be recovered across a mesh
         that is one triangle thick.
-    recovery, combine : str, optional
+    recovery : {"green", "least squares", "projection"}, optional
+        How Hessians are found from values, see `metrics.hessians`. Where they are noisy, as where
+        a solver oscillates, the fit by least squares smooths them.
+    combine : {"intersection", "average"}, optional
         As for `metrics.metric_from_solution`.
     growth : float, optional
         No mesh has more than so many times the vertices of the one before, or so many times less:

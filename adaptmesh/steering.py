@@ -56,7 +56,7 @@ class Steering:
     p: float = 2.0
     fields: Sequence[str] | None = None
     limits: Limits = field(default_factory=Limits)
-    recovery: str = "least squares"
+    recovery: str = "green"
     combine: str = "intersection"
     growth: float = 4.0
     order: float = 1.0

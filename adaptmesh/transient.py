@@ -65,7 +65,7 @@ def transient_loop(
     h_max: float | None = None,
     max_anisotropy: float = np.inf,
     gradation: float | None = 2.0,
-    recovery: str = "least squares",
+    recovery: str = "green",
     combine: str = "intersection",
     transfer: str = "conservative",
     keep_bounds: bool = False,

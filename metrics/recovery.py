@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from .arrays import Floats, Ints, as_numbers
-from .elements import LinearElements, checked_values, place_of
+from .elements import checked_values, place_of
 from .errors import MetricError
 
 __all__ = ["METHODS", "absolute", "gradients", "hessians"]
@@ -43,7 +43,7 @@ def gradients(
         return _fit(p, t, u)[0]
     if method == "green":
         raise MetricError("Green's formula gives Hessians; for gradients use the projection")
-    return _Lumped(p, t).gradient(u)
+    return _projected(p, t, u)
 
 
 def hessians(
@@ -65,10 +65,11 @@ def hessians(
         any mesh, of second where the neighbours lie symmetrically.
         ``"projection"``: the gradients by the lumped L2 projection, projected again, and made
         symmetric. ``"green"``: tested with the hat function of the vertex,
-        H_ij = -(integral of d_i u d_j hat) / (integral of hat), which is defined inside only;
-        vertices of the border take the mean of their neighbours.
-        The last two do not converge on irregular meshes, but are usable: they use one ring or two
-        blindly and cost less.
+        H_ij = -(integral of d_i u d_j hat) / (integral of hat), which is defined inside only; at
+        the border by least squares.
+        The last two do not converge on irregular meshes, but cost less; and on meshes that are
+        adapted again and again Green's formula, which sees one ring only, gave better meshes than
+        the fit to two: see :doc:`/theory`.
 
     Returns
     -------
@@ -80,8 +81,7 @@ def hessians(
     MetricError
         For arrays that do not fit, values that are not finite, a triangle that is not
         counter-clockwise, a vertex without triangle; and where the values of the whole mesh do
-        not determine a quadratic (it has few points, all on two lines or another conic), or
-        Green's formula has no vertex inside.
+        not determine a quadratic (it has few points, all on two lines or another conic).
 
     References
     ----------
@@ -105,9 +105,8 @@ def derivatives(
     p, t, u = checked_values(points, triangles, values)
     if method == "least squares":
         return _fit(p, t, u)
-    lumped = _Lumped(p, t)
-    first = lumped.gradient(u)
-    return first, lumped.green(u) if method == "green" else lumped.hessian_of(first)
+    first = _projected(p, t, u)
+    return first, _green(p, t, u) if method == "green" else _projected_twice(p, t, first)
 
 
 def absolute(hessians: ArrayLike, floor: ArrayLike = 0.0) -> Floats:
@@ -143,58 +142,30 @@ def check_method(method: str) -> None:
 
 def _fit(p: Floats, t: Ints, u: Floats) -> tuple[Floats, Floats]:
     first, second, undetermined = _core.quadratic_fit(p, t, u)
-    if undetermined >= 0:
-        raise MetricError(
-            f"the values around {place_of(p, undetermined)} do not determine a quadratic: the "
-            "points there lie on two lines, or another conic; refine the mesh across, or use "
-            'the method "projection"'
-        )
+    _refuse_undetermined(p, undetermined)
     return first, second
 
 
-class _Lumped(LinearElements):
-    """Recovery by linear finite elements with the mass matrix lumped."""
-
-    def gradient(self, u: Floats) -> Floats:
-        """The projection of the gradient, (n, 2)."""
-        parts = self.gradients(u) * (self.areas / 3)[:, None]
-        sums = [self.gathered(np.repeat(parts[:, [k]], 3, axis=1)) for k in range(2)]
-        return np.stack(sums, axis=1) / self.mass[:, None]
-
-    def hessian_of(self, first: Floats) -> Floats:
-        """The projection of the derivatives of a gradient (n, 2), made symmetric."""
-        of_x, of_y = self.gradient(first[:, 0]), self.gradient(first[:, 1])
-        return np.stack([of_x[:, 0], 0.5 * (of_x[:, 1] + of_y[:, 0]), of_y[:, 1]], axis=1)
-
-    def green(self, u: Floats) -> Floats:
-        g, s = self.gradients(u)[:, None] * self.areas[:, None, None], self.slopes
-        xx, yy = g[..., 0] * s[..., 0], g[..., 1] * s[..., 1]
-        xy = 0.5 * (g[..., 0] * s[..., 1] + g[..., 1] * s[..., 0])
-        sums = np.stack([self.gathered(part) for part in (xx, xy, yy)], axis=1)
-        out: Floats = -sums / self.mass[:, None]
-        self._spread_to_border(out)
-        return out
-
-    def _spread_to_border(self, out: Floats) -> None:
-        """Gives vertices of the border the mean of their neighbours, from inside outwards."""
-        ends, starts = self.triangles[:, [1, 2, 0]].ravel(), self.triangles.ravel()
-        known = np.ones(len(out), bool)
-        forward, backward = (
-            np.sort(a.astype(np.int64) * len(out) + b) for a, b in ((starts, ends), (ends, starts))
+def _refuse_undetermined(p: Floats, i: int) -> None:
+    if i >= 0:
+        raise MetricError(
+            f"the values around {place_of(p, i)} do not determine a quadratic: the "
+            "points there lie on two lines, or another conic; refine the mesh across, or use "
+            'the method "projection"'
         )
-        open_sides = np.setdiff1d(forward, backward)
-        known[open_sides // len(out)] = known[open_sides % len(out)] = False
-        a, b = np.concatenate([starts, ends]), np.concatenate([ends, starts])
-        while not known.all():
-            use = known[a] & ~known[b]
-            if not use.any():
-                raise MetricError(
-                    f"Green's formula needs a vertex inside, and vertex {int(known.argmin())} has "
-                    'none in its part of the mesh; use the method "least squares"'
-                )
-            count = np.bincount(b[use], minlength=len(out))
-            now = count > 0
-            for k in range(3):
-                sums = np.bincount(b[use], out[a[use], k], len(out))
-                out[now, k] = sums[now] / count[now]
-            known |= now
+
+
+def _projected(p: Floats, t: Ints, u: Floats) -> Floats:
+    return _core.projected_gradients(p, t, np.ascontiguousarray(u))
+
+
+def _projected_twice(p: Floats, t: Ints, first: Floats) -> Floats:
+    """The projection of the derivatives of a gradient (n, 2), made symmetric."""
+    of_x, of_y = (_projected(p, t, component) for component in first.T)
+    return np.stack([of_x[:, 0], 0.5 * (of_x[:, 1] + of_y[:, 0]), of_y[:, 1]], axis=1)
+
+
+def _green(p: Floats, t: Ints, u: Floats) -> Floats:
+    second, undetermined = _core.green_hessians(p, t, u)
+    _refuse_undetermined(p, undetermined)
+    return second

@@ -13,6 +13,7 @@
 #include "metrics/core/bindings.hpp"
 #include "metrics/core/edge_sides.hpp"
 #include "metrics/core/gradation.hpp"
+#include "metrics/core/lumped.hpp"
 #include "metrics/core/nodal.hpp"
 #include "metrics/core/recovery.hpp"
 
@@ -163,6 +164,44 @@ nb::tuple quadratic_fit(Points points, Triangles triangles, Values values) {
     return nb::make_tuple(gradients.numpy(), hessians.numpy(), undetermined);
 }
 
+nb::object projected_gradients(Points points, Triangles triangles, Values values) {
+    const std::size_t n = points.shape(0);
+    require(values.shape(0) == n, "one value for each point is needed");
+    Result<double> out(n, 2);
+    {
+        nb::gil_scoped_release release;
+        metrics::project_gradient(points.data(), n, triangles.data(), triangles.shape(0),
+                                  values.data(), out.data);
+    }
+    return out.numpy();
+}
+
+// By Green's formula inside, and at the border of the quadratic fit.
+nb::tuple green_hessians(Points points, Triangles triangles, Values values) {
+    const std::size_t n = points.shape(0), m = triangles.shape(0);
+    require(values.shape(0) == n, "one value for each point is needed");
+    Result<double> out(n, 3);
+    std::int64_t undetermined = -1;
+    {
+        nb::gil_scoped_release release;
+        const std::vector<Tensor> by_green =
+            metrics::green_hessians(points.data(), n, triangles.data(), m, values.data());
+        std::vector<std::ptrdiff_t> around(n, 0);  // how many triangles
+        for (std::size_t i = 0; i < 3 * m; ++i) ++around[triangles.data()[i]];
+        const metrics::Adjacency mesh(triangles.data(), m, n);
+        metrics::QuadraticFit fit(points.data(), values.data(), mesh);
+        for (std::size_t i = 0; i < n; ++i) {
+            metrics::Derivatives d{0, 0, by_green[i]};
+            // All around a vertex inside there are as many triangles as neighbours.
+            const bool inside = mesh.of(Index(i)).size() == around[i];
+            if (!inside && !fit.at(Index(i), d) && undetermined < 0) undetermined = std::int64_t(i);
+            double* h = out.data + 3 * i;
+            h[0] = d.hessian.a, h[1] = d.hessian.b, h[2] = d.hessian.c;
+        }
+    }
+    return nb::make_tuple(out.numpy(), undetermined);
+}
+
 }  // namespace
 
 void bind_nodal(nb::module_& m) {
@@ -176,4 +215,7 @@ void bind_nodal(nb::module_& m) {
           "tolerance"_a);
     m.def("quadratic_fit", &quadratic_fit, "points"_a, "triangles"_a, "values"_a,
           "Gradients (n, 2), packed Hessians (n, 3), the first vertex without (-1: none).");
+    m.def("projected_gradients", &projected_gradients, "points"_a, "triangles"_a, "values"_a);
+    m.def("green_hessians", &green_hessians, "points"_a, "triangles"_a, "values"_a,
+          "Packed Hessians (n, 3), the first vertex where the border has none (-1: none).");
 }
