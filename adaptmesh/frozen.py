@@ -21,6 +21,8 @@ def frozen_domain(domain: Domain, mesh: Mesh, names: Iterable[str]) -> Domain:
     Every name and region keeps its number. What is periodic with a frozen boundary is frozen too,
     and what was frozen before stays so.
     """
+    if isinstance(names, str):
+        raise TypeError(f"frozen={names!r}: give a list of names, [{names!r}]")
     names = with_partners(domain, names)
     numbers = [domain.tag_named(name) for name in names]
     edges = {name: mesh.points[mesh.edges_named(name)] for name in names}

@@ -43,9 +43,9 @@ class Interval:
     start: float
     end: float
     mesh: Mesh
-    first: Fields
-    last: Fields
-    times: Floats
+    first: Fields = field(repr=False)
+    last: Fields = field(repr=False)
+    times: Floats = field(repr=False)
     hessians: Fields = field(repr=False)
     seconds: Seconds
     is_bare: bool = field(repr=False)  # whether `advance` is given an array and not a dict
@@ -119,6 +119,10 @@ class TransientHistory:
         from .transient_files import load
 
         return load(Path(folder), domain)
+
+    def __repr__(self) -> str:
+        counts = [len(sweep) for sweep in self.sweeps]
+        return f"<TransientHistory: {len(counts)} sweeps of {max(counts, default=0)} intervals>"
 
     def __str__(self) -> str:
         lines = ["sweep  vertices, averaged over time    least     most  seconds  in adaptmesh"]

@@ -29,6 +29,15 @@ def test_program_in_this_python(title, module, tmp_path):
     check(run_here(PROGRAMS[title], tmp_path))
 
 
+def test_program_in_time(tmp_path):
+    pytest.importorskip("skfem")
+    done = run_here(PROGRAMS["In time"], tmp_path)
+    assert done.returncode == 0, done.stderr
+    vertices, heat = map(float, done.stdout.split()[-2:])
+    assert vertices == pytest.approx(1000, rel=0.06)
+    assert heat == pytest.approx(1, abs=5e-3)  # quadrature of the spot
+
+
 def test_program_for_freefem(tmp_path):
     if not shutil.which("FreeFem++-nw"):
         pytest.skip("no FreeFEM")
@@ -42,7 +51,7 @@ def test_program_for_dolfinx(python_with_dolfinx):
 
 
 def test_every_solver_has_a_program():
-    assert set(PROGRAMS) == {"scikit-fem", "NGSolve", "FEniCSx", "FreeFEM"}
+    assert set(PROGRAMS) == {"scikit-fem", "NGSolve", "FEniCSx", "FreeFEM", "In time"}
     for program in PROGRAMS.values():
         compile(program, "page", "exec")
 

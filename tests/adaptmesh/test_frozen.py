@@ -140,6 +140,8 @@ def test_what_cannot_be_frozen_is_named():
     square = am.Domain.rectangle(0, 0, 1, 1)
     with pytest.raises(DomainError, match="no boundary is named 'wall'"):
         square.with_frozen("wall")
+    with pytest.raises(TypeError, match=r"give a list of names, \['left'\]"):
+        am.adapt(am.generate(square, 0.3), 0.2, frozen="left")
     with pytest.raises(DomainError, match="no boundary is named 'wall'"):
         am.adapt(am.generate(square, 0.3), 0.2, frozen=["wall"])
     disc = am.Domain.from_curves([Circle((0, 0), 1)], names={"rim": [0]})
