@@ -43,7 +43,6 @@ from .lines import Lines
 from .mesh import Mesh
 from .misfits import Fit, around_misfits
 from .recutting import had_better_be_anew, recut
-from .strands import Strands
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -102,8 +101,6 @@ def edited(
         mesher.remove_free(options.removal_rounds)
         mesher.swap()
         fill(mesher, samples, budget, within(report, turn / options.turns, 1 / options.turns))
-    if not Strands.of(chains, lines).may_stay(len(chains.vertices)).all():
-        return None  # periodic boundaries do not correspond
     if had_better_be_anew(mesher, chains, lines, samples, budget.max_vertices):
         return None
     mesher.set_constrained(chains.edges, lines.segments[chains.edge_lines])

@@ -60,7 +60,7 @@ def recut(
 def had_better_be_anew(
     mesher: _core.Mesher, chains: Chains, lines: Lines, field: ControlSpace, most_points: int
 ) -> bool:
-    """Whether rows with edges that are not unit are far from what they would be if all were cut.
+    """Whether rows that are tied differ, or rows off unit are far from what new ones would be.
 
     Where curves come very near each other, the vertices of each keep the other from being cut more
     coarsely, and triangles between them from being cut more finely.
@@ -119,6 +119,8 @@ class _Plan:
 
     def had_better_be_anew(self) -> bool:
         """See the function of this name."""
+        if not self.may_stay.all():
+            return True
         n, domain = self.lines.n_straight, self.lines.domain
         off = self.strands.line[self.strands.starts][is_off(self.lengths)]
         off = np.unique(off[off >= n]) - n
