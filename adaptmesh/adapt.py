@@ -17,6 +17,7 @@ from .frozen import frozen_domain
 from .generate import Budget, Progress, Samples, generate
 from .local import Editing, edited
 from .mesh import Mesh
+from .outline import check_is_mesh
 from .prediction import predict
 
 
@@ -60,6 +61,7 @@ def adapt(
     -------
     Mesh
     """
+    check_is_mesh(mesh)
     domain = mesh.domain or Domain.of_mesh(mesh)
     field = control_space_on(mesh, metric)
     meshed = frozen_domain(domain, mesh, frozen) if frozen else domain

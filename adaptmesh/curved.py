@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
+from . import _core, domain_input
 from .chords import Surroundings, chords_along, name_of_curve
 from .curves import Curve
 from .domain_input import Floats, Inside, Ints, read_only
@@ -25,6 +25,9 @@ FIRST_CHORDS = 8
 
 TURN = 15.0
 """Curves turn by at most so many degrees along a chord of the inscribed polygon."""
+
+IN_PLACES = 1e4
+"""A curve is larger than this many units in the last place of its coordinates."""
 
 OUTLINE_LOOKS = 4
 """In so many steps a curve is looked at along each chord of an outline."""
@@ -216,12 +219,20 @@ def skeleton_of(
 
 
 def _check_curves(curves: Sequence[Curve]) -> None:
+    """Refuse what are no curves, and those that arithmetic cannot tell from points."""
     if not curves:
         raise DomainError("no curves: give those that bound the domain, from adaptmesh.curves")
     for i, curve in enumerate(curves):
         if not isinstance(curve, Curve):
             raise DomainError(
                 f"curve {i} is a {type(curve).__name__}: make it one of adaptmesh.curves"
+            )
+        places = domain_input.checked_points(_some_points(curve), f"curve {i}: point")
+        extent, far = float(np.ptp(places, axis=0).max()), float(np.abs(places).max())
+        if extent <= IN_PLACES * np.finfo(float).eps * far:
+            raise DomainError(
+                f"{name_of_curve(curves, i)} is {extent:.3g} long or wide, and coordinates of "
+                f"{far:g} are rounded to {np.spacing(far):.1g}: move the origin near it"
             )
 
 
@@ -249,6 +260,9 @@ def _divided(points: Floats, lines: Ints, owners: Ints) -> tuple[Ints, Ints]:
 
 def extent_of(curves: Sequence[Curve]) -> float:
     """The longer side of the box around curves, from a few places on each."""
-    looks = np.linspace(0, 1, 9)
-    points = np.concatenate([curve.point(np.append(looks, curve.breaks)) for curve in curves])
+    points = np.concatenate([_some_points(curve) for curve in curves])
     return float(np.ptp(points, axis=0).max())
+
+
+def _some_points(curve: Curve) -> Floats:
+    return curve.point(np.append(np.linspace(0, 1, 9), curve.breaks))

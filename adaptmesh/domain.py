@@ -211,6 +211,8 @@ class Domain:
         >>> round(ring.area / np.pi, 12)
         3.0
         """
+        if isinstance(curves, Curve):
+            raise DomainError(f"curves={curves!r}: a sequence of curves is wanted, [curve]")
         curves = tuple(curves)
         numbers, tag_of = checked_names(names or {}, len(curves), "curve", tags)
         inside = Inside.checked(holes, regions, region_tags)

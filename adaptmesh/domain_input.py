@@ -58,6 +58,8 @@ def read_only(array: NDArray[Any]) -> NDArray[Any]:
 def checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
     """Coordinates (n, 2) that areas can be computed of, or a `DomainError`."""
     try:
+        if np.iscomplexobj(points):
+            raise TypeError("they are complex")
         out = np.array(points, dtype=np.float64, order="C")
     except (TypeError, ValueError) as error:
         raise DomainError(f"{what}s must be an (n, 2) array of numbers: {error}") from None
@@ -113,10 +115,17 @@ def checked_segments(segments: ArrayLike, points: Floats) -> Ints:
     return out
 
 
+def check_is_mapping(labels: object, what: str) -> None:
+    """Refuse what gives nothing for each name."""
+    if not isinstance(labels, Mapping):
+        raise DomainError(f"{what} must be a mapping of names, not {type(labels).__name__}")
+
+
 def checked_regions(
     regions: ByLabel[ArrayLike], given: Mapping[str, int]
 ) -> tuple[Mapping[str, int], Floats, Ints]:
     """The number of each name, the seeds (s, 2), and the region of each, or a `DomainError`."""
+    check_is_mapping(regions, "regions")
     names, numbers = numbered(regions, given, "region")
     seeds, owners = [], []
     for number, (name, where) in zip(numbers, regions.items(), strict=True):
@@ -134,13 +143,14 @@ def checked_names(
     given: Mapping[str, int] | None = None,
 ) -> tuple[Mapping[str, int], Ints]:
     """The tag of each name and of each of n segments (or curves), or a `DomainError`."""
+    check_is_mapping(names, "names")
     tag_of, numbers = numbered(names, given or {}, "tag")
     tags = np.zeros(n, np.int32)
     for tag, (name, segments) in zip(numbers, names.items(), strict=True):
         for i in segments:
-            if not 0 <= i < n:
+            if not isinstance(i, (int, np.integer)) or not 0 <= i < n:
                 raise DomainError(
-                    f"name {name!r} is given to {what} {i}, but the {what}s are numbered "
+                    f"name {name!r} is given to {what} {i!r}, but the {what}s are numbered "
                     f"0 to {n - 1}"
                 )
             if tags[i] not in (0, tag):
@@ -158,7 +168,7 @@ def numbered(
     A number stands for itself, and has no name; a name has the number that is given for it, or else
     the least one from 1 on that nothing has yet.
     """
-    labels = [int(k) if isinstance(k, (int, np.integer)) else str(k) for k in labels]
+    labels = [_checked_label(k, what) for k in labels]
     taken = {*given.values(), *(k for k in labels if isinstance(k, int))}
     for number in taken:
         if not isinstance(number, (int, np.integer)) or not -(2**31) <= number < 2**31:
@@ -172,6 +182,14 @@ def numbered(
         numbers.append(names[label] if isinstance(label, str) else label)
     names.update({name: int(number) for name, number in given.items()})
     return MappingProxyType(names), numbers
+
+
+def _checked_label(label: object, what: str) -> Label:
+    if isinstance(label, (int, np.integer)):
+        return int(label)
+    if not isinstance(label, str) or not label:
+        raise DomainError(f"the name {label!r}: a text or, for a bare {what}, a number is wanted")
+    return str(label)
 
 
 def name_of_number(
@@ -212,8 +230,8 @@ def joined_rings(rings: Sequence[ArrayLike]) -> tuple[Floats, Ints]:
     """Points and segments of closed rings; rings that share a point share its number."""
     points, segments, n = [], [], 0
     for k, ring in enumerate(rings):
-        p = checked_points(ring, f"ring {k}: point")
-        if (p[0] == p[-1]).all():
+        p = checked_points(ring, f"ring {k}: point", least=0)
+        if len(p) and (p[0] == p[-1]).all():
             p = p[:-1]
         if len(p) < 3:
             raise DomainError(f"ring {k} has {len(p)} different points: at least 3 are needed")

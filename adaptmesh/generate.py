@@ -17,9 +17,9 @@ from . import _core
 from .boundary import Outline, cut_outline
 from .domain import Domain
 from .edge_lengths import measure_edges
-from .errors import BudgetError, DomainError
+from .errors import BudgetError
 from .mesh import Mesh
-from .prediction import predict
+from .prediction import check_is_domain, predict
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -175,8 +175,7 @@ def generate(
     BudgetError
         The mesh would have more than `max_vertices` vertices.
     """
-    if not isinstance(domain, Domain):
-        raise DomainError(f"a Domain is wanted, not {type(domain).__name__}: see adaptmesh.Domain")
+    check_is_domain(domain)
     if placement not in PLACEMENTS:
         raise ValueError(f"placement={placement!r} is none of {', '.join(map(repr, PLACEMENTS))}")
     report = progress or (lambda stage, fraction: None)

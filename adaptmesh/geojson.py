@@ -81,5 +81,5 @@ def shapes_of_geojson(content: Mapping[str, Any]) -> list[Shape]:
         if feature.get("type") == "Feature":
             geometry = feature.get("geometry")
             name = (feature.get("properties") or {}).get("name")
-        shapes.append(Shape.of_geojson(geometry, number, None if name is None else str(name)))
+        shapes.append(Shape.of_geojson(geometry, number, None if name in (None, "") else str(name)))
     return shapes

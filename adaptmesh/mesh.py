@@ -6,12 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from metrics.measure import mesh_edges
+
+from .mesh_arrays import frozen_integers, frozen_reals, numbers, rows
 
 if TYPE_CHECKING:
     from .domain import Domain
@@ -19,12 +21,6 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
-
-
-def _frozen(array: ArrayLike, dtype: type, shape: tuple[int, ...]) -> NDArray[Any]:
-    out: NDArray[Any] = np.array(array, dtype=dtype, order="C").reshape(shape)
-    out.flags.writeable = False
-    return out
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,17 +72,19 @@ class Mesh:
         def put(name: str, value: object) -> None:
             object.__setattr__(self, name, value)
 
-        put("points", _frozen(self.points, np.float64, (-1, 2)))
-        put("triangles", _frozen(self.triangles, np.int32, (-1, 3)))
-        put("edges", _frozen(self.edges, np.int32, (-1, 2)))
-        regions = self.regions if np.size(self.regions) else np.zeros(len(self.triangles))
-        put("regions", _frozen(regions, np.int32, (len(self.triangles),)))
-        tags = self.edge_tags if np.size(self.edge_tags) else np.zeros(len(self.edges))
-        put("edge_tags", _frozen(tags, np.int32, (len(self.edges),)))
+        points = frozen_reals(rows(self.points, "points", 2))
+        put("points", points)
+        put("triangles", frozen_integers(rows(self.triangles, "triangles", 3), "triangle"))
+        put("edges", frozen_integers(rows(self.edges, "edges", 2), "edge"))
+        regions = numbers(self.regions, "regions", len(self.triangles), "triangles")
+        put("regions", frozen_integers(regions, "region"))
+        tags = numbers(self.edge_tags, "edge_tags", len(self.edges), "edges")
+        put("edge_tags", frozen_integers(tags, "edge tag"))
         if self.kept is not None:
-            put("kept", _frozen(self.kept, np.int32, (len(self.points),)))
+            kept = numbers(self.kept, "kept", len(points), "points")
+            put("kept", frozen_integers(kept, "number kept"))
         for name in ("required_points", "required_edges"):
-            put(name, _frozen(getattr(self, name), np.int32, (-1,)))
+            put(name, frozen_integers(np.ravel(getattr(self, name)), name))
         put("names", MappingProxyType(dict(self.names)))
         put("region_names", MappingProxyType(dict(self.region_names)))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +13,8 @@ from .curves import Curve
 from .domain import Domain
 from .domain_input import Label, labelled
 from .errors import DomainError
-from .invariants.subject import edge_keys
+from .invariants import local
+from .invariants.subject import Finding, Subject, edge_keys
 from .mesh import Mesh
 from .smoothed import smooth_curves
 
@@ -35,6 +36,7 @@ def domain_of_mesh(mesh: Mesh, corner_angle: float | None = None) -> Domain:
     boundaries stay as the mesh has them, or become the curves of `smooth_curves`. Required vertices
     stay points, and required edges frozen segments.
     """
+    check_is_mesh(mesh)
     if not len(mesh.triangles):
         raise DomainError("the mesh has no triangles, so it covers no domain")
     _refuse_what_is_no_mesh(mesh)
@@ -84,6 +86,9 @@ def domain_of_mesh(mesh: Mesh, corner_angle: float | None = None) -> Domain:
 
 
 def _refuse_what_is_no_mesh(mesh: Mesh) -> None:
+    """Refuse triangles and edges that are not what the rest takes them for."""
+    subject = Subject(mesh)
+    _refuse_if_found(subject, local.finite_points, local.indices_in_range)
     clockwise = np.flatnonzero(mesh.areas < 0)
     if len(clockwise):
         i = int(clockwise[0])
@@ -100,6 +105,29 @@ def _refuse_what_is_no_mesh(mesh: Mesh) -> None:
         raise DomainError(
             f"vertices {i} and {j} of the mesh are the same, ({x:.17g}, {y:.17g}): make them one"
         )
+    _refuse_if_found(
+        subject,
+        local.positive_triangles,
+        local.two_triangles_an_edge,
+        local.same_orientation,
+        local.constrained_are_edges,
+    )
+
+
+def _refuse_if_found(subject: Subject, *looks: Callable[[Subject], Finding]) -> None:
+    for look in looks:
+        found = look(subject)
+        if found.broken:
+            raise DomainError(
+                f"the mesh covers no domain: {found.note}; {found.offenders[0]}; its validate() "
+                "lists what is wrong"
+            )
+
+
+def check_is_mesh(mesh: object) -> None:
+    """Refuse what is no mesh."""
+    if not isinstance(mesh, Mesh):
+        raise DomainError(f"a Mesh is wanted, not {type(mesh).__name__}: generate makes one")
 
 
 def _half_edges(triangles: Ints) -> tuple[Ints, Ints]:

@@ -12,6 +12,7 @@ from metrics import ControlSpace, tensor
 
 from .domain import Domain
 from .domain_input import Floats, Ints
+from .errors import DomainError
 from .runs import points_on
 
 # A chord is followed more closely while its curve is off it by more than this, in metric length,
@@ -32,12 +33,19 @@ def predict(domain: Domain, metric: Any) -> int:
     where straight edges cannot follow the metric: where a layer bends by more than its thickness
     along an edge.
     """
+    check_is_domain(domain)
     field = metrics.as_control_space(metric)
     polygon = _inscribed(domain, field)
     complexity = metrics.complexity(polygon.points, polygon.triangles, field).value
     boundary = metrics.edge_lengths(polygon.points, polygon.border, field).sum()
     least = max(3, int(domain.curved.is_vertex.sum()))
     return max(least, int(2 / np.sqrt(3) * complexity + boundary / 2) + 1)
+
+
+def check_is_domain(domain: object) -> None:
+    """Refuse what is no domain."""
+    if not isinstance(domain, Domain):
+        raise DomainError(f"a Domain is wanted, not {type(domain).__name__}: see adaptmesh.Domain")
 
 
 class _Polygon(NamedTuple):

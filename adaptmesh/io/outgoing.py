@@ -24,6 +24,8 @@ def outgoing(
     triangle_fields: Mapping[str, ArrayLike],
 ) -> Content:
     """The content of a file of that mesh and those fields."""
+    if not isinstance(mesh, Mesh):
+        raise TypeError(f"a Mesh is wanted, not {type(mesh).__name__}")
     n, m = len(mesh.points), len(mesh.triangles)
     if not m:
         raise FormatError("the mesh has no triangles; there is nothing to write")

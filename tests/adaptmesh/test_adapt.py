@@ -1,5 +1,7 @@
 """Remeshing for a nodal metric: the domain, its names and its regions stay."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -123,3 +125,48 @@ def test_regions_part_without_constrained_edges_between_them(plate):
 def test_an_empty_mesh_covers_no_domain():
     with pytest.raises(am.DomainError, match="no triangles"):
         am.Domain.of_mesh(am.Mesh(np.empty((0, 2)), np.empty((0, 3))))
+
+
+TWO = {"points": [(0, 0), (1, 0), (1, 1), (0, 1)], "triangles": [(0, 1, 2), (0, 2, 3)]}
+
+
+@pytest.mark.parametrize("keep", [False, True])
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"points": [(0, 0), (1, 0), (1, 1), (0, np.nan)]}, "point 3 (0.0, nan)"),
+        ({"triangles": [(0, 1, 2), (0, 2, 4)]}, "triangle 1: [0, 2, 4], with 4 points"),
+        ({"triangles": [(0, 1, 2), (0, 3, 2)]}, "triangle 1, [0, 3, 2], is clockwise"),
+        ({"triangles": [(0, 1, 2), (0, 2, 3), (0, 2, 3)]}, "edges have more than two triangles"),
+        ({"edges": [(0, 1), (1, 3)]}, "constrained edge 1 is no side of a triangle"),
+        ({"edges": [(0, 1), (1, 4)]}, "constrained edge 1: [1, 4], with 4 points"),
+    ],
+)
+def test_a_mesh_that_is_none_is_refused_with_the_place(changed, message, keep):
+    with pytest.raises(am.DomainError, match=re.escape(message)):
+        am.adapt(am.Mesh(**{**TWO, **changed}), 0.3, keep=keep)
+
+
+def test_what_is_no_mesh_is_named(plate):
+    for wrong in (None, plate):
+        with pytest.raises(am.DomainError, match="a Mesh is wanted, not"):
+            am.adapt(wrong, 0.3)
+        with pytest.raises(am.DomainError, match="a Mesh is wanted, not"):
+            am.Domain.of_mesh(wrong)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"points": [(0, 0, 0), (1, 0, 0)]}, "points must be an (n, 2) array, not one of shape"),
+        ({"triangles": [0, 1, 2]}, "triangles must be an (n, 3) array, not one of shape (3,)"),
+        ({"triangles": [(0, 1, 2), (0, 2.5, 3)]}, "triangle 1 is [0.0, 2.5, 3.0]: whole numbers"),
+        ({"triangles": [(0, 1, 2**40)]}, "triangle 0 is [0, 1, 1099511627776]: whole numbers"),
+        ({"regions": [1]}, "regions must be one number for each of 2 triangles"),
+        ({"edges": [(0, 1)], "edge_tags": [1, 2]}, "edge_tags must be one number for each of 1"),
+        ({"edges": [(0, 1)], "edge_tags": [np.nan]}, "edge tag 0 is nan"),
+    ],
+)
+def test_arrays_that_would_change_in_a_mesh_are_refused(arguments, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        am.Mesh(**{**TWO, **arguments})

@@ -325,3 +325,16 @@ def test_circles_that_touch_but_for_rounding_are_refused(shift):
     circles = [Circle((x, y), 2), Circle((x - 0.8, y), 0.8), Circle((x + 0.8, y), 0.8)]
     with pytest.raises(am.DomainError, match=r"(cross or touch at|passes the point of) .*\("):
         am.Domain.from_curves(circles)
+
+
+@pytest.mark.parametrize(
+    ("curves", "message"),
+    [
+        (Circle((0, 0), 1), "a sequence of curves is wanted"),
+        ([Circle((0, 0), 1e80)], "choose another unit of length"),
+        ([Circle((1e6, 0), 1e-9)], "curve 0 (Circle around (1e+06, 0)) is 2.1e-09 long or wide"),
+    ],
+)
+def test_curves_that_coordinates_cannot_hold_are_refused(curves, message):
+    with pytest.raises(DomainError, match=re.escape(message)):
+        Domain.from_curves(curves)

@@ -1,5 +1,7 @@
 """Domains: what they accept, and how they refuse the rest."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -84,6 +86,7 @@ def test_it_never_changes():
         (([(0, 0), (1e80, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)]), "point 1 .* another unit"),
         (([(0, 0, 0), (1, 0, 0), (1, 1, 0)], RING), r"shape \(3, 3\)"),
         (("abc", RING), "array of numbers"),
+        ((np.array(SQUARE) * 1j, RING), "they are complex"),
         ((SQUARE, [(0, 1), (1, 2), (2, 4)]), "segment 2 joins points 2 and 4"),
         ((SQUARE, [(0, 1), (1, -2)]), "segment 1 joins points 1 and -2"),
         ((SQUARE, [(0.0, 1.0)]), "must be integers"),
@@ -126,3 +129,19 @@ def test_rectangle():
     assert Domain.rectangle(-1, 2, 3, 4).area == 8.0
     with pytest.raises(DomainError, match="x0 < x1"):
         Domain.rectangle(1, 0, 0, 1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"names": ["inlet"]}, "names must be a mapping of names, not list"),
+        ({"names": {"inlet": [1.5]}}, "name 'inlet' is given to segment 1.5"),
+        ({"names": {"inlet": "3"}}, "name 'inlet' is given to segment '3'"),
+        ({"names": {"": [1]}}, "the name '': a text"),
+        ({"names": {None: [1]}}, "the name None: a text"),
+        ({"regions": [(0.5, 0.5)]}, "regions must be a mapping of names, not list"),
+    ],
+)
+def test_names_that_are_none_are_refused(arguments, message):
+    with pytest.raises(DomainError, match=re.escape(message)):
+        Domain(SQUARE, RING, **arguments)
