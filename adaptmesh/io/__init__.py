@@ -2,6 +2,7 @@
 
 =================  ==============================================================================
 ``.vtu``           VTK XML, for ParaView and pyvista; keeps everything as it is
+``.vtk``           the same in VTK's legacy format, binary (or text)
 ``.msh``           Gmsh, version 4.1 (or 2.2), binary (or text); names are physical groups
 ``.mesh .meshb``   Medit, for Mmg, BAMG, FreeFEM; metric and fields in ``.sol``, ``.solb`` beside it
 ``.ele``           Triangle, with ``.node`` and ``.poly`` beside it; names are in comments
@@ -123,7 +124,7 @@ def write(
     version : {"4.1", "2.2"}, optional
         Version of ``.msh``; 4.1 if not given.
     binary : bool, optional
-        Whether ``.msh`` is binary (if not given) or text.
+        Whether ``.msh`` or ``.vtk`` is binary (if not given) or text.
     **fields : array
         Fields of the points, (n,), (n, 2) or (n, 3); an array with as many rows as there are
         triangles (and not points) is a field of the triangles. Integers stay integers in

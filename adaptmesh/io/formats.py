@@ -50,6 +50,20 @@ def _save_vtu(path: Path, content: Content) -> dict[Path, bytes]:
     return {path: encode(content)}
 
 
+def _load_vtk(path: Path, fields: bool) -> Content:
+    from .vtk import decode
+
+    data = read_bytes(path)
+    with located(path):
+        return decode(data)
+
+
+def _save_vtk(path: Path, content: Content, **options: bool) -> dict[Path, bytes]:
+    from .vtk import encode
+
+    return {path: encode(content, **options)}
+
+
 def _load_gmsh(path: Path, fields: bool) -> Content:
     from .gmsh import decode
 
@@ -114,6 +128,7 @@ def _save_triangle(path: Path, content: Content) -> Mapping[Path, bytes]:
 
 FORMATS: dict[str, Format] = {
     ".vtu": Format(_load_vtu, _save_vtu),
+    ".vtk": Format(_load_vtk, _save_vtk, frozenset({"binary"})),
     ".msh": Format(_load_gmsh, _save_gmsh, frozenset({"version", "binary"})),
     ".mesh": Format(_load_medit, _save_medit, required=True),
     ".meshb": Format(_load_medit, _save_medit, required=True),

@@ -12,6 +12,8 @@ from adaptmesh.mesh import Mesh
 
 WAYS = {
     "vtu": ("a.vtu", {}),
+    "vtk": ("a.vtk", {}),
+    "vtk text": ("a.vtk", {"binary": False}),
     "msh41": ("a.msh", {}),
     "msh41 text": ("a.msh", {"binary": False}),
     "msh22": ("a.msh", {"version": "2.2"}),
@@ -254,7 +256,7 @@ def test_format_limits(tmp_path):
 @pytest.mark.parametrize("path", ["a.stl", "a", "a.msh.gz"])
 def test_unknown_extension(tmp_path, path):
     for act in (lambda p: io.write(p, a_mesh()), io.read, io.read_fields):
-        with pytest.raises(FormatError, match=r"known are \.vtu, \.msh, \.mesh, \.meshb"):
+        with pytest.raises(FormatError, match=r"known are \.vtu, \.vtk, \.msh, \.mesh, \.meshb"):
             act(tmp_path / path)
 
 

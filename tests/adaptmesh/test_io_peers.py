@@ -233,12 +233,16 @@ def test_solutions_of_mmg_are_read(tmp_path):
 # -------------------------------------------------------------------------------------------- VTK
 
 
-def test_pyvista_shows_everything(tmp_path):
+@pytest.mark.parametrize(
+    ("name", "options"), [("a.vtu", {}), ("a.vtk", {}), ("a.vtk", {"binary": False})]
+)
+def test_pyvista_shows_everything(tmp_path, name, options):
     pyvista = pytest.importorskip("pyvista")
     mesh = a_mesh()
     metric = metrics.tensor.pack(np.tile([4.0, 1.0, 9.0], (25, 1)))
-    io.write(tmp_path / "a.vtu", mesh, v=mesh.points, q=np.arange(32.0), metric=metric)
-    grid = pyvista.read(tmp_path / "a.vtu")
+    fields = {"v": mesh.points, "q": np.arange(32.0), "with blank": np.arange(25)}
+    io.write(tmp_path / name, mesh, metric=metric, **fields, **options)
+    grid = pyvista.read(tmp_path / name)
     np.testing.assert_array_equal(grid.points[:, :2], mesh.points)
     np.testing.assert_array_equal(grid.cells_dict[5], mesh.triangles)
     np.testing.assert_array_equal(grid.cells_dict[3], mesh.edges)
@@ -246,6 +250,7 @@ def test_pyvista_shows_everything(tmp_path):
     np.testing.assert_array_equal(grid["edge_tags"], [*[0] * 32, *mesh.edge_tags])
     np.testing.assert_array_equal(grid["v"][:, :2], mesh.points)
     assert grid["v"].shape == (25, 3)
+    np.testing.assert_array_equal(grid["with blank"], np.arange(25))
     assert grid["metric"][0].reshape(3, 3).tolist() == [[4, 1, 0], [1, 9, 0], [0, 0, 0]]
     assert grid.field_data["edge_tags: in let"].tolist() == [3]
     assert grid.field_data["regions: right"].tolist() == [2]
@@ -284,10 +289,65 @@ def test_what_vtk_saves_is_read(tmp_path, mode, compressor):
             np.testing.assert_array_equal(values, {**fields, "metric": metric}[name])
 
 
+@pytest.mark.parametrize("binary", [True, False])
+@pytest.mark.parametrize("version", [42, 51])
+def test_legacy_files_of_vtk_are_read(tmp_path, version, binary):
+    pyvista = pytest.importorskip("pyvista")
+    vtk = pytest.importorskip("vtkmodules.vtkIOLegacy")
+    mesh = Mesh(
+        *[getattr(a_mesh(), f) for f in ("points", "triangles", "regions", "edges", "edge_tags")],
+        names={'"a" & <b> 50 %': 3, "Größe": 5},
+        region_names={"left": 1},
+    )
+    metric = np.random.default_rng(0).random((25, 3)) / 7 + [1, 0, 1]
+    fields = {"u": np.arange(25) / 8, "v": mesh.points, "q": np.arange(32), "one two": mesh.points}
+    io.write(tmp_path / "a.vtu", mesh, metric=metric, **fields)
+    grid = pyvista.read(tmp_path / "a.vtu")
+    grid.field_data["words"] = ["one", "two words\nin two lines" * 9]
+    grid.point_data.active_scalars_name = "u"  # SCALARS, VECTORS and TENSORS, the rest in a FIELD
+    grid.point_data.active_vectors_name = "v"
+    grid.GetPointData().SetActiveTensors("metric")
+    writer = vtk.vtkUnstructuredGridWriter()
+    writer.SetInputData(grid)
+    writer.SetFileName(str(tmp_path / "b.vtk"))
+    writer.SetFileVersion(version)
+    (writer.SetFileTypeToBinary if binary else writer.SetFileTypeToASCII)()
+    writer.Write()
+    back = io.read(tmp_path / "b.vtk")
+    digits = 0 if binary else 1e-10  # what VTK writes in text
+    np.testing.assert_allclose(back.points, mesh.points, rtol=0, atol=digits)
+    for part in ("triangles", "regions", "edges", "edge_tags"):
+        np.testing.assert_array_equal(getattr(back, part), getattr(mesh, part))
+    assert dict(back.names) == dict(mesh.names)
+    assert dict(back.region_names) == dict(mesh.region_names)
+    found = io.read_fields(tmp_path / "b.vtk")
+    assert found.keys() == {*fields, "metric"}
+    for name, values in found.items():
+        np.testing.assert_allclose(values, {**fields, "metric": metric}[name], atol=digits)
+
+
+def test_polygons_of_vtk_are_read(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    surface = pyvista.PolyData(
+        np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]]),
+        faces=[3, 0, 1, 2, 3, 0, 2, 3],
+        lines=[2, 0, 1, 2, 1, 2],
+    )
+    surface.cell_data["edge_tags"] = np.array([7, 8, 0, 0])
+    for binary in (True, False):
+        surface.save(tmp_path / "a.vtk", binary=binary)
+        mesh = io.read(tmp_path / "a.vtk")
+        assert mesh.triangles.tolist() == [[0, 1, 2], [0, 2, 3]]
+        assert mesh.edges.tolist() == [[0, 1], [1, 2]]
+        assert mesh.edge_tags.tolist() == [7, 8]
+
+
 # ----------------------------------------------------------------------------------------- meshio
 
 MESHIO = {
     "vtu": ("a.vtu", {}),
+    "vtk": ("a.vtk", {}),
+    "vtk text": ("a.vtk", {"binary": False}),
     "msh41": ("a.msh", {}),
     "msh41 text": ("a.msh", {"binary": False}),
     "msh22": ("a.msh", {"version": "2.2"}),
@@ -331,13 +391,13 @@ def test_meshio_never_mistakes_our_fields(tmp_path, capsys, options):
         np.testing.assert_allclose(theirs.point_data["u"], x + 100 * y)
 
 
-@pytest.mark.parametrize("name", ["b.vtu", "b.mesh", "b.meshb", "b.msh"])
+@pytest.mark.parametrize("name", ["b.vtu", "b.vtk", "b.mesh", "b.meshb", "b.msh"])
 def test_what_meshio_writes_is_read(tmp_path, name):
     meshio = pytest.importorskip("meshio")
     mesh = a_mesh()
     cells = [("triangle", mesh.triangles), ("line", mesh.edges)]
     refs = [mesh.regions, mesh.edge_tags]
-    data = {"b.msh": {"gmsh:physical": refs, "gmsh:geometrical": refs}, "b.vtu": {}}
+    data = {"b.msh": {"gmsh:physical": refs, "gmsh:geometrical": refs}, "b.vtu": {}, "b.vtk": {}}
     u = np.random.default_rng(0).random(25)
     # the points are given with z, for meshio warns if it has to add it
     points = mesh.points if "mesh" in name else np.column_stack([mesh.points, np.zeros(25)])
@@ -348,7 +408,7 @@ def test_what_meshio_writes_is_read(tmp_path, name):
     back = io.read(tmp_path / name)
     for part in ("points", "triangles", "edges"):
         np.testing.assert_array_equal(getattr(back, part), getattr(mesh, part))
-    if name != "b.vtu":
+    if name not in ("b.vtu", "b.vtk"):
         np.testing.assert_array_equal(back.regions, mesh.regions)
         np.testing.assert_array_equal(back.edge_tags, mesh.edge_tags)
     if point_data:

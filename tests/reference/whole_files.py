@@ -102,6 +102,60 @@ def vtu(encoding):
     return of_bytes("a.vtu", grid + b"</VTKFile>\n")
 
 
+def vtk_by_vtk(binary):
+    """A .vtk file that VTK itself has written."""
+
+    def write(folder):
+        pyvista = pytest.importorskip("pyvista")
+        io.write(folder / "a.vtu", wheel(), u=np.arange(7.0), v=wheel().points)
+        grid = pyvista.read(folder / "a.vtu")
+        grid.field_data["words"] = ["one", "two words"]
+        (folder / "a.vtu").unlink()
+        grid.save(folder / "a.vtk", binary=binary)
+        return folder / "a.vtk"
+
+    return write
+
+
+VTK_POLYGONS = """\
+# vtk DataFile Version 2.0
+a square of two triangles, and its sides
+ASCII
+DATASET POLYDATA
+POINTS 4 float
+0 0 0  1 0 0  1 1 0  0 1 0
+LINES 4 12
+2 0 1  2 1 2  2 2 3  2 3 0
+POLYGONS 2 8
+3 0 1 2
+3 0 2 3
+CELL_DATA 6
+SCALARS edge_tags int 1
+LOOKUP_TABLE default
+1 1 2 3 0 0
+SCALARS regions int 1
+LOOKUP_TABLE default
+0 0 0 0 1 2
+POINT_DATA 4
+SCALARS u double
+LOOKUP_TABLE mine
+0 1 2 3
+LOOKUP_TABLE mine 2
+0 0 0 1  1 1 1 1
+VECTORS w float
+0 0 1  0 0 2  0 0 3  0 0 4
+TENSORS t float
+1 0 0 0 1 0 0 0 1  1 0 0 0 1 0 0 0 1  1 0 0 0 1 0 0 0 1  1 0 0 0 1 0 0 0 1
+TEXTURE_COORDINATES xy 2 float
+0 0 1 0 1 1 0 1
+COLOR_SCALARS c 1
+0 0.5 0.5 1
+FIELD more 1
+q 1 4 long
+5 6 7 8
+"""
+
+
 def inline_xdmf():
     mesh = wheel()
 
@@ -282,6 +336,13 @@ WHOLE = {
         "text": vtu("ascii"),
         "base64": vtu("base64"),
         "raw": vtu("raw"),
+    },
+    ".vtk": {
+        "ours": of_mesh("a.vtk"),
+        "our text": of_mesh("a.vtk", binary=False),
+        "5.1": vtk_by_vtk(True),
+        "5.1 text": vtk_by_vtk(False),
+        "polygons": of_bytes("a.vtk", VTK_POLYGONS),
     },
     ".msh": {
         "4.1": of_mesh("a.msh"),
