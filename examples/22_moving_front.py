@@ -20,6 +20,7 @@ from scipy.sparse.linalg import splu
 from skfem.helpers import dot, grad
 
 import adaptmesh as am
+import metrics
 from adaptmesh.convert import to_skfem
 
 matplotlib.use("Agg")
@@ -131,7 +132,18 @@ print(f"order {order:.2f}; of the mass, {abs(lost):.1e} was lost on the way")
 assert thrifty[0][1] < uniform[-1][1] / 3  # with a sixth of the vertices
 assert order < -0.9
 assert abs(lost) < 1e-10
-print(history)
+print(history, end="\n\n")
+
+# The last mesh was made for what happened in its interval in the sweep before.
+before = history.sweeps[-2][-1]
+metric = metrics.metric_from_hessians(
+    before.mesh.points,
+    before.mesh.triangles,
+    list(before.hessians.values()),
+    target_vertices=len(last.mesh.points),
+    limits=metrics.Limits(h_max=0.2, gradation=1.5),
+)
+print(am.measure(last.mesh, metric))
 
 name = "22_moving_front"
 for interval, values, suffix, title in (
