@@ -241,7 +241,8 @@ class _Refinement:
                 return f"{me} meets itself at ({x:.10g}, {y:.10g}): cut it there (Curve.part)"
             return (
                 f"{me} passes {owner} at ({x:.10g}, {y:.10g}) nearer than chords can tell "
-                "apart: where curves meet, cut them both there (Curve.part), or move them apart"
+                "apart: where curves meet, cut them both there (Curve.part); ends that are to "
+                "meet want a larger join_tolerance; or move them apart"
             )
         return (
             f"{me} has a kink at {at}: cut it there (Curve.part), or give the `breaks` of a "

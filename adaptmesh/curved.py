@@ -18,7 +18,9 @@ from .errors import DomainError
 from .runs import Run, are_near, join, points_on
 
 JOINED = 1e-12
-"""Ends of curves that are nearer than this share of the extent are one, if nothing else is said."""
+JOINED_PLACES = 8
+"""Ends of curves that are nearer than this share of the extent, or than so many units in the last
+place of coordinates, are one, if nothing else is said."""
 
 FIRST_CHORDS = 8
 """Chords along each curve before they are looked at."""
@@ -172,7 +174,7 @@ def skeleton_of(
     _check_curves(curves)
     extent = extent_of(curves)
     if join_tolerance is None:
-        join_tolerance = JOINED * extent
+        join_tolerance = max(JOINED * extent, JOINED_PLACES * last_place_of(curves))
     if not 0 <= join_tolerance < extent:
         raise DomainError(
             f"join_tolerance={join_tolerance}: a length from 0 to the extent, {extent:g}, is wanted"
@@ -262,6 +264,11 @@ def extent_of(curves: Sequence[Curve]) -> float:
     """The longer side of the box around curves, from a few places on each."""
     points = np.concatenate([_some_points(curve) for curve in curves])
     return float(np.ptp(points, axis=0).max())
+
+
+def last_place_of(curves: Sequence[Curve]) -> float:
+    """The unit in the last place of the largest coordinates, from a few places on each curve."""
+    return float(np.spacing(max(np.abs(_some_points(curve)).max() for curve in curves)))
 
 
 def _some_points(curve: Curve) -> Floats:

@@ -189,8 +189,9 @@ class Domain:
             curves, and their `breaks`, are vertices of every mesh; so is the start of a closed
             curve that is alone.
         join_tolerance : float, optional
-            Ends that are nearer than this are the same. If not given, 1e-12 of the extent, what
-            the rounding of sines and cosines can leave.
+            Ends that are nearer than this are the same. If not given, 1e-12 of the extent or 8
+            units in the last place of coordinates, what the rounding of sines and cosines can
+            leave.
 
         Raises
         ------

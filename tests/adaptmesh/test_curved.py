@@ -338,3 +338,21 @@ def test_circles_that_touch_but_for_rounding_are_refused(shift):
 def test_curves_that_coordinates_cannot_hold_are_refused(curves, message):
     with pytest.raises(DomainError, match=re.escape(message)):
         Domain.from_curves(curves)
+
+
+def hall(shift):
+    """A square on two arcs, moved."""
+    corners = np.array([(0, 0), (0.4, 0), (1, 0), (1, 1), (0, 1)]) + shift
+    below = np.array([(0.2, -0.1), (0.7, -0.1)]) + shift
+    arcs = [Arc.through(corners[k], below[k], corners[k + 1]) for k in (0, 1)]
+    lines = [Line(corners[k], corners[(k + 1) % 5]) for k in (2, 3, 4)]
+    return Domain.from_curves([*arcs, *lines], names={"below": [0, 1]})
+
+
+@pytest.mark.parametrize("shift", np.random.default_rng(2).uniform(-1e6, 1e6, (20, 2)).tolist())
+def test_ends_far_from_the_origin_are_joined(shift):
+    """Where coordinates are rounded to more than 1e-12 of the extent."""
+    domain = hall(shift)
+    assert domain.area == pytest.approx(hall((0, 0)).area, rel=1e-8)
+    assert domain.curved.is_vertex.sum() == 5
+    am.generate(domain, 0.2).validate().raise_if_invalid()
