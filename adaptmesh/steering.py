@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metrics import Curvature, Limits, normalised
-from metrics.nodal import predicted_vertices
+from metrics.nodal import border_edges, vertices_of
 from metrics.normalise import check_combination, check_norm
 from metrics.recovery import check_method
 from metrics.solution import optimal_tensors
@@ -225,8 +225,9 @@ def fewest_vertices(mesh: Mesh, h_max: float) -> float:
     """About how many vertices a mesh has in which all sizes are the largest allowed."""
     if h_max == np.inf:
         return 3.0
-    coarsest = np.tile([h_max**-2, 0.0, h_max**-2], (len(mesh.points), 1))
-    return predicted_vertices(mesh.points, mesh.triangles, coarsest)
+    ends = mesh.points[border_edges(mesh.triangles)]
+    border = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum()
+    return vertices_of(mesh.areas.sum() / h_max**2, border / h_max)
 
 
 def check_reachable(target_vertices: float, mesh: Mesh, h_max: float) -> None:
