@@ -46,7 +46,8 @@ class EdgeSampler {
     // From a thousandth of the edge on, chords may be longer than asked for.
     static constexpr int FINE_DEPTH = 10;
     static constexpr double LONGEST_FINE_CHORD = 4.0;
-    static constexpr int DEEPEST = 1000;  // the end of halving doubles
+    static constexpr int DEEPEST = 1000;    // the end of halving doubles
+    static constexpr double UNSEEN = 0.02;  // share of an edge, see moments()
 
     // ... and it is no longer than `longest_chord`: finer detail can pass unseen between samples.
     // Edges shorter than `uncut_below` will not be cut: only their lengths are kept. Of edges
@@ -134,17 +135,21 @@ class EdgeSampler {
 
     // The integrals of 2 t s and 2 (1 - t) s along an edge, with s = sqrt(det M) and t from 0 at
     // its start to 1 at its end: means of s over a thin triangle with its tip at the start, or at
-    // the end.
+    // the end. Without both ends: a strip that thin beside a jump is not seen by a quadrature with
+    // few points, and area that lies in it is worth nothing to who uses one.
     std::array<double, 2> moments(Index e) const {
         double total = 0, from_start = 0;
         for (Index i = first_[e]; i < first_[e + 1]; ++i) {
             const Chord& p = pieces_[i];
-            const double t0 = p.from.t, t1 = p.to.t, dt = (t1 - t0) / 6;
+            const double t0 = std::max(p.from.t, UNSEEN), t1 = std::min(p.to.t, 1 - UNSEEN),
+                         dt = (t1 - t0) / 6;
+            if (!(dt > 0)) continue;
             const double s0 = p.from.sqrt_det, s1 = p.to.sqrt_det;
             const double middle = 4 * std::sqrt(s0 * s1);
             total += dt * (s0 + middle + s1);
             from_start += dt * (t0 * s0 + 0.5 * (t0 + t1) * middle + t1 * s1);
         }
+        total /= 1 - 2 * UNSEEN, from_start /= 1 - 2 * UNSEEN;
         return {2 * from_start, 2 * (total - from_start)};
     }
 
