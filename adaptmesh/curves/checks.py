@@ -26,6 +26,11 @@ def checked_point(point: ArrayLike, what: str) -> Floats:
     out = np.array(point, dtype=np.float64)
     if out.shape != (2,) or not np.isfinite(out).all():
         raise DomainError(f"{what}: {point!r} is no pair of finite numbers")
+    if np.abs(out).max() > domain_input.LARGEST:
+        raise DomainError(
+            f"{what}: {point!r} is beyond {domain_input.LARGEST:g}, where areas overflow; choose "
+            "another unit of length"
+        )
     return out
 
 

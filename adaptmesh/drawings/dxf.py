@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..curves import Arc, BSpline, Circle, Curve, EllipticArc, Line
+from ..curves.checks import checked_point
 from ..errors import AdaptmeshError, FormatError
 from ..io.files import read_bytes
 from ..io.located import located, refusing
@@ -129,7 +130,7 @@ def _bulged(rows: Floats, closed: bool) -> Iterator[Curve]:
     for (x0, y0, bulge), (x1, y1, _) in list(zip(rows, following, strict=True))[
         : None if closed else -1
     ]:
-        a, b = np.array([x0, y0]), np.array([x1, y1])
+        a, b = (checked_point(p, "a vertex") for p in ((x0, y0), (x1, y1)))
         if (a == b).all():
             continue
         if bulge == 0:
@@ -137,7 +138,9 @@ def _bulged(rows: Floats, closed: bool) -> Iterator[Curve]:
             continue
         # The top of the arc: from the middle of the chord, to its right, by bulge times half of it.
         half = (b - a) / 2
-        yield Arc.through(a, (a + b) / 2 + bulge * np.array([half[1], -half[0]]), b)
+        with np.errstate(over="ignore", invalid="ignore"):
+            top = (a + b) / 2 + bulge * np.array([half[1], -half[0]])
+        yield Arc.through(a, checked_point(top, "an arc"), b)
 
 
 def _spline(entity: Any) -> Iterator[Curve]:

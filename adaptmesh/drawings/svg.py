@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..curves import Bezier, Curve, Line
+from ..curves.checks import checked_point
 from ..errors import DomainError, FormatError
 from ..io.files import read_bytes
 from ..io.located import located, refusing
@@ -80,8 +81,9 @@ class _Placement:
         self._shift = np.array([e, -f])
 
     def point(self, p: Any) -> Floats:
-        out: Floats = self._linear @ [float(p.x), float(p.y)] + self._shift
-        return out
+        with np.errstate(over="ignore", invalid="ignore"):
+            out = self._linear @ [float(p.x), float(p.y)] + self._shift
+        return checked_point(out, "a point")
 
     def vector(self, p: Any, origin: Any) -> Floats:
         out: Floats = self._linear @ [float(p.x) - float(origin.x), float(p.y) - float(origin.y)]

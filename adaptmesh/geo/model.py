@@ -208,7 +208,11 @@ class _Model:
             faces = {number: self._face(number) for number in self.surfaces}
             union = shapely.union_all(list(faces.values()))
             filled = shapely.union_all(
-                [shapely.Polygon(part.exterior) for part in shapely.get_parts(union)]
+                [
+                    shapely.Polygon(part.exterior)
+                    for part in shapely.get_parts(union)
+                    if part.geom_type == "Polygon"
+                ]
             )
             holes = _parts_inside(filled.difference(union))
         except shapely.errors.GEOSException as error:

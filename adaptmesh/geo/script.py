@@ -116,7 +116,7 @@ class _Statements(Reader):
         if sign == "=":
             self.variables.values[name] = values
         elif is_list and sign == "+=":
-            self.variables.values[name] = old + values
+            self.variables.values.setdefault(name, []).extend(values)
         elif len(old) == len(values) == 1:
             self.variables.values[name] = [self._changed(old[0], sign, values[0])]
         else:
@@ -162,7 +162,11 @@ class _Statements(Reader):
         if not self.has("("):
             name = self.next().text
             self.expect("In")
+        before = self.at
         values = self.braced()
+        has_step = [t.text for t in self.tokens[before : self.at]].count(":") == 2
+        if values[:1] > values[-1:] and not has_step:  # a list would count down, but not a loop
+            values = []
         body = self.at
         end = self._end_of("For", "EndFor", opening)
         for value in values:

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from adaptmesh import generate, read_domain
 from adaptmesh.errors import AdaptmeshError, DomainError, FormatError
 from adaptmesh.geo.model import _Model
@@ -187,3 +186,12 @@ def test_scripts_cut_anywhere(tmp_path):
             read_domain(path)
         except (FormatError, DomainError) as error:
             assert "a.geo" in str(error)
+
+
+def test_a_loop_without_a_step_does_not_count_down(tmp_path):
+    (tmp_path / "a.geo").write_text(
+        "n = 1; For k In {5:3}\n n += 1;\nEndFor\nFor k In {5:3:-1}\n n += 1;\nEndFor\n"
+        "Point(1) = {0, 0, 0}; Point(2) = {n, 0, 0}; Point(3) = {0, 1, 0};\n"
+        "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 1};\n"
+    )
+    assert read_domain(tmp_path / "a.geo").area == 2  # n is 4
