@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from adaptmesh import generate, read_domain
 from adaptmesh.errors import AdaptmeshError, DomainError, FormatError
 from adaptmesh.geo.model import _Model
