@@ -275,15 +275,13 @@ def _hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
 
 
 def _covered(mesh: Mesh, places: Floats) -> NDArray[np.bool_]:
-    """Which of the places lie in a triangle of the mesh."""
-    p = mesh.points[mesh.triangles]
+    """Which of the places lie in a triangle of the mesh, by exact signs: some are on its sides."""
+    a, b, c = mesh.points[mesh.triangles].transpose(1, 0, 2).copy()
     out = np.zeros(len(places), bool)
-    for i, x in enumerate(places):
-        inside = np.ones(len(p), bool)
-        for k in range(3):
-            a, d = p[:, k], p[:, (k + 1) % 3] - p[:, k]
-            inside &= d[:, 0] * (x[1] - a[:, 1]) - d[:, 1] * (x[0] - a[:, 0]) >= 0
-        out[i] = inside.any()
+    for i, place in enumerate(places):
+        x = np.tile(place, (len(a), 1))
+        signs = [_core.orient2d(*side, x) for side in ((a, b), (b, c), (c, a))]
+        out[i] = (np.min(signs, axis=0) >= 0).any()
     return out
 
 

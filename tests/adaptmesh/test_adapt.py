@@ -89,6 +89,20 @@ def test_nested_holes_and_islands_are_found_again():
     assert again.area == pytest.approx(domain.area)
 
 
+@pytest.mark.parametrize("seed", [603, 624, 790, 1119])  # where rounding puts it beside both
+def test_no_hole_is_found_where_there_is_none(seed):
+    """The triangle of the domain has its centroid on the line that parts those of the mesh."""
+    corners = np.random.default_rng(seed).random((3, 2))
+    u, v = corners[1] - corners[0], corners[2] - corners[0]
+    if u[0] * v[1] < u[1] * v[0]:
+        corners = corners[::-1]
+    points = [*corners, (corners[1] + corners[2]) / 2]
+    mesh = am.Mesh(points, [(0, 1, 3), (0, 3, 2)])
+    domain = am.Domain.of_mesh(mesh)
+    assert len(domain.holes) == 0
+    assert domain.area == pytest.approx(mesh.areas.sum(), rel=1e-12)
+
+
 def test_holes_that_touch_in_the_middle_of_a_side_are_found_again():
     """The first hole begins and ends where the second touches its side: there stays a corner."""
     square = [(0, 0), (4, 0), (4, 4), (0, 4)]
