@@ -31,6 +31,9 @@ TURN = 15.0
 IN_PLACES = 1e4
 """A curve is larger than this many units in the last place of its coordinates."""
 
+MESH_TURN = 60.0
+"""And by at most so many along an edge of a mesh: where they turn by more at once is a corner."""
+
 OUTLINE_LOOKS = 4
 """In so many steps a curve is looked at along each chord of an outline."""
 
@@ -181,7 +184,7 @@ def skeleton_of(
         )
     if not 0 <= corner_angle <= 180:
         raise DomainError(f"corner_angle={corner_angle}: degrees from 0 to 180 are wanted")
-    joined = join(curves, tags, corner_angle, join_tolerance, isolated)
+    joined = join(curves, tags, min(corner_angle, MESH_TURN), join_tolerance, isolated)
     isolated = isolated[~are_near(isolated, joined.corners, join_tolerance)]
     vertices = np.concatenate([joined.corners, isolated])
     lines, line_curves = _divided(vertices, joined.lines, joined.line_curves)

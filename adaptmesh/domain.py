@@ -185,7 +185,8 @@ class Domain:
             that a vertex, too, be it smooth or not.
         corner_angle : float
             In degrees. Two curves of one name that meet with a turn of at most this are one smooth
-            line, and where they meet is no vertex, unless both are straight. All other ends of
+            line, and where they meet is no vertex, unless both are straight or they turn by more
+            than 60°, as no edge of a mesh may. All other ends of
             curves, and their `breaks`, are vertices of every mesh; so is the start of a closed
             curve that is alone.
         join_tolerance : float, optional

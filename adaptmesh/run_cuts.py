@@ -19,6 +19,7 @@ from metrics import ControlSpace
 
 from .chords import Chords, Surroundings, chords_along
 from .curve_cuts import equal_shares, measure_runs
+from .curved import MESH_TURN
 from .domain import Domain
 from .edge_lengths import straight_lengths
 
@@ -27,7 +28,7 @@ Ints = NDArray[np.int32]
 Index = NDArray[np.integer]
 
 # By how much a curve may turn along an edge of a mesh, in degrees: a circle gets at least six.
-TURN = 60.0
+TURN = MESH_TURN
 
 # A part with a chord longer than this is cut anew, up to so many times.
 LONG_CHORD = 1.3

@@ -356,3 +356,13 @@ def test_ends_far_from_the_origin_are_joined(shift):
     assert domain.area == pytest.approx(hall((0, 0)).area, rel=1e-8)
     assert domain.curved.is_vertex.sum() == 5
     am.generate(domain, 0.2).validate().raise_if_invalid()
+
+
+def test_curves_that_turn_more_than_an_edge_may_meet_in_a_corner():
+    """Whatever corner_angle says: no chord over the joint is right, however short."""
+    arcs = [Arc((-1, 0), 1, np.pi, 2 * np.pi), Arc((1, 0), 1, np.pi, 2 * np.pi)]
+    lines = [Line((2, 0), (2, 1)), Line((2, 1), (-2, 1)), Line((-2, 1), (-2, 0))]
+    domain = Domain.from_curves([*arcs, *lines], names={"arcs": [0, 1]}, corner_angle=180)
+    assert (np.hypot(*vertices(domain).T) < 1e-12).any()
+    for size in (3.0, 0.37, 0.2):
+        am.generate(domain, size).validate().raise_if_invalid()
