@@ -25,14 +25,15 @@
 namespace adaptmesh {
 
 struct FrontOptions {
-    double accept = 1.35;   // a triangle ahead with no longer side is kept as it is
-    double spacing = 0.8;   // a point nearer than this to a vertex is refused
-    double target = 1.0;    // length of the sides to be made, before book-keeping
-    double lowest = 0.6;    // height of the new triangle, at least and ...
-    double highest = 1.26;  // ... at most
-    double taken = 0.75;    // one that is expected to be nearer is not even asked about
-    double settled = 0.01;  // a point that would move less than this stays where it is
-    int trials = 3;         // how often a point is asked about, at most
+    double accept = 1.35;    // a triangle ahead with no longer side is kept as it is
+    double spacing = 0.8;    // a point nearer than this to a vertex is refused
+    double target = 1.0;     // length of the sides to be made, before book-keeping
+    double lowest = 0.6;     // height of the new triangle, at least and ...
+    double highest = 1.26;   // ... at most
+    double taken = 0.75;     // one that is expected to be nearer is not even asked about
+    double settled = 0.01;   // a point that would move less than this stays where it is
+    double unsettled = 0.1;  // so few of a layer stay, too, where their metric is known
+    int trials = 3;          // how often a point is asked about, at most
 };
 
 class Front {
@@ -77,45 +78,67 @@ class Front {
     template <typename TensorAt>
     void feed(TensorAt&& tensor_at) {
         ++trial_;
-        std::size_t still_open = 0;
+        moves_.clear();
         for (std::size_t k = 0; k < open_.size(); ++k) {
             Wanted& w = wanted_[open_[k]];
             w.metric = tensor_at(k);
             if (trial_ == options_.trials) continue;
             const Point better = apex(w.edge, w.metric);
             const double x = better.x - w.at.x, y = better.y - w.at.y;
-            if (w.metric.q(x, y) < options_.settled * options_.settled) continue;
-            w.at = better;
+            if (w.metric.q(x, y) >= options_.settled * options_.settled)
+                moves_.push_back({open_[k], better});
+        }
+        open_.clear();
+        if (double(moves_.size()) <= options_.unsettled * double(wanted_.size())) return;
+        for (const Move& move : moves_) {
+            Wanted& w = wanted_[move.wanted];
+            w.at = move.to;
             if (is_in_sight(w))
-                open_[still_open++] = open_[k];
+                open_.push_back(move.wanted);
             else
                 w.near = NONE;
         }
-        open_.resize(still_open);
     }
 
-    // Puts the points into the mesh, each with the metric there; new edges join the front.
+    // Puts the points into the mesh, each with the metric there; new edges join the front, in the
+    // order of the old ones. Returns how many took place.
+    //
+    // The points go in from coarse to fine along the front. Where a void lies ahead, the triangles
+    // that reach across it are shared by the points of the layer; one after the other, each point
+    // would take nearly all of those of the point before:
+    //
+    //      \    |    /  .-'             \   |    \   |    \   |
+    //       .---.---.-'- - -             .---.----.---.----.---.
+    //      one after the other           every other, then those between
     template <typename Poll>
     Index insert(Poll& poll) {
         PointInserter inserter(mesh_, options_.spacing);
+        const auto put_in = [&](std::size_t first, std::size_t step) {
+            for (std::size_t i = first, done = 0; i < wanted_.size(); i += step, ++done) {
+                if (done % 1024 == 0) poll();
+                Wanted& w = wanted_[i];
+                if (w.near == NONE) continue;  // out of sight
+                if (inserter.insert(w.at, w.metric, w.near) == PointInserter::Outcome::inserted)
+                    w.vertex = Index(mesh_.vertices.size()) - 1;
+            }
+        };
+        put_in(0, COARSEST);
+        for (std::size_t step = COARSEST; step > 1; step /= 2) put_in(step / 2, step);
+
         Index inserted = 0;
-        for (std::size_t i = 0; i < wanted_.size(); ++i) {
-            if (i % 1024 == 0) poll();
-            Wanted& w = wanted_[i];
-            const Edge e = w.edge;
-            if (w.near == NONE) continue;  // out of sight
-            if (inserter.insert(w.at, w.metric, w.near) != PointInserter::Outcome::inserted)
-                continue;
-            const Index p = Index(mesh_.vertices.size()) - 1;
+        for (const Wanted& w : wanted_) {
+            if (w.vertex == NONE) continue;
             ++inserted;
-            edges_.push_back(e);
-            edges_.push_back({p, e.b});
-            edges_.push_back({e.a, p});
+            edges_.push_back(w.edge);
+            edges_.push_back({w.vertex, w.edge.b});
+            edges_.push_back({w.edge.a, w.vertex});
         }
         return inserted;
     }
 
   private:
+    static constexpr std::size_t COARSEST = 32;  // of every so many points one goes in first
+
     struct Edge {
         Index a, b;
     };
@@ -124,6 +147,12 @@ class Front {
         Point at;
         Index near;     // the triangle it lies in, NONE if it is out of sight
         Tensor metric;  // at the place, as soon as it is known; until then what is expected
+        Index vertex;   // that it has become, or NONE
+    };
+
+    struct Move {
+        std::size_t wanted;
+        Point to;
     };
 
     // Triangles accepted of late, and how many unit triangles their metric area is worth. Where the
@@ -165,7 +194,7 @@ class Front {
             return;
         }
         const Tensor ahead = expected_metric(e, T.n[place.slot]);
-        Wanted w{e, apex(e, ahead), place.triangle, ahead};
+        Wanted w{e, apex(e, ahead), place.triangle, ahead, NONE};
         if (is_wanted_already(w) || !is_in_sight(w) || is_at_corner(w)) return;
         last_wanted_[e.a] = last_wanted_[e.b] = Index(wanted_.size());
         wanted_.push_back(w);
@@ -253,6 +282,7 @@ class Front {
     std::vector<Edge> edges_;
     std::vector<Wanted> wanted_;
     std::vector<std::size_t> open_;   // those of wanted_ that are asked about
+    std::vector<Move> moves_;         // of those that have not settled
     std::vector<Index> last_wanted_;  // by an edge at each vertex
     int trial_ = 0;
 };

@@ -120,16 +120,17 @@ def ridge(x):
     return np.stack([coarse + extra * a * a, extra * a * b, coarse + extra * b * b], axis=1)
 
 
-@pytest.mark.parametrize("coarser", [1.0, 1.5])
-def test_the_worst_triangles_are_lifted(monkeypatch, coarser):
-    """And no edge is given up for that."""
-    metric = lambda x: ridge(x) / coarser  # noqa: E731
-    after = am.measure(am.generate(SQUARE, metric), metric)
+def test_the_worst_triangles_are_lifted(monkeypatch):
+    """In every mesh, in the mean well, and edges are not given up for that: but for chance."""
+    fields = [lambda x, c=c: ridge(x) / c for c in (0.8, 1.0, 1.2, 1.5, 1.8, 2.2)]
+    after = [am.measure(am.generate(SQUARE, metric), metric) for metric in fields]
     options = generate.Settling(lifts=0)
     monkeypatch.setattr(generate, "Settling", lambda: options)
-    before = am.measure(am.generate(SQUARE, metric), metric)
-    assert after.quality_min > before.quality_min + 0.02
-    assert after.unit_fraction >= before.unit_fraction
+    before = [am.measure(am.generate(SQUARE, metric), metric) for metric in fields]
+    gains = [a.quality_min - b.quality_min for a, b in zip(after, before, strict=True)]
+    assert min(gains) > 0
+    assert np.mean(gains) > 0.03
+    assert np.mean([r.unit_fraction for r in after]) >= np.mean([r.unit_fraction for r in before])
 
 
 def test_where_most_edges_are_off_nothing_is_tried(monkeypatch):
