@@ -11,13 +11,15 @@ import numpy as np
 import metrics
 from metrics import ControlSpace
 
+from .budget import Budget, Progress
 from .chains import vertices_at
 from .domain import Domain
 from .frozen import frozen_domain
-from .generate import Budget, Progress, Samples, generate
+from .generate import generate
 from .local import Editing, edited
 from .mesh import Mesh
 from .outline import check_is_mesh
+from .placement import Samples
 from .prediction import predict
 
 

@@ -321,7 +321,7 @@ def _meshing(
     quiet: bool, max_vertices: int | None, placement: str | None
 ) -> Iterator[dict[str, Any]]:
     """The options of `generate` and `adapt` that were given, and a progress bar while they run."""
-    from .generate import PLACEMENTS
+    from .placement import PLACEMENTS
     from .progress import TerminalProgress
 
     options: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""Metric lengths of straight edges, the metric being asked for in rounds.
+"""Metric lengths of edges, alone and of a mesh at work, the metric being asked for in rounds.
 
 `core/edge_sampler.hpp` explains how.
 """
@@ -51,3 +51,18 @@ def straight_lengths(
 ) -> Floats:
     """Metric lengths of straight edges (k, 2) between points (n, 2)."""
     return measure_edges(sampler_of(points, field(points), edges), field, most_points)
+
+
+def refresh(mesher: _core.Mesher, field: ControlSpace) -> None:
+    """Evaluate the metric where vertices are new or have moved."""
+    mesher.set_stale_metrics(field(mesher.stale_points()))
+
+
+def measure_fresh_edges(
+    mesher: _core.Mesher, field: ControlSpace, uncut_below: float
+) -> _core.EdgesToMeasure:
+    """Measure the edges that have changed, and let the mesher know where its lengths are off."""
+    edges = mesher.fresh_edges(uncut_below)
+    measure_edges(edges.sampler, field)
+    mesher.correct_lengths(edges)
+    return edges

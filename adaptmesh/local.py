@@ -20,28 +20,24 @@ from numpy.typing import NDArray
 from metrics import ControlSpace
 
 from . import _core
+from .budget import Budget, Progress
 from .chains import Chains, find_chains, vertices_at
 from .domain import Domain
+from .edge_lengths import measure_fresh_edges
 from .errors import DomainError
-from .generate import (
-    Budget,
-    EdgePlacement,
-    FrontPlacement,
-    Optimisation,
-    Progress,
-    Samples,
-    Settling,
-    finished_mesh,
-    insert_what_was_missed,
-    measure_fresh_edges,
-    optimise,
-    place_ahead_of_front,
-    place_along_edges,
-    settle,
-)
+from .generate import finished_mesh
 from .lines import Lines
 from .mesh import Mesh
 from .misfits import Fit, around_misfits
+from .optimisation import Optimisation, Settling, optimise, settle
+from .placement import (
+    EdgePlacement,
+    FrontPlacement,
+    Samples,
+    insert_what_was_missed,
+    place_ahead_of_front,
+    place_along_edges,
+)
 from .recutting import had_better_be_anew, recut
 
 Floats = NDArray[np.float64]

@@ -23,6 +23,7 @@ STAGES = {
     "place_ahead_of_front": "front",
     "place_along_edges": "edges",
     "insert_what_was_missed": "missed",
+    "settle": "settle",
     "finished_mesh": "finish",
 }
 REPORTED = {"smoothing": "smooth", "improving": "improve"}  # stages of its progress
