@@ -331,7 +331,10 @@ def test_circles_that_touch_but_for_rounding_are_refused(shift):
     ("curves", "message"),
     [
         (Circle((0, 0), 1), "a sequence of curves is wanted"),
-        ([Circle((0, 0), 1e80)], "choose another unit of length"),
+        (
+            [Parametric(lambda t: 1e80 * Circle((0, 0), 1).point(t), closed=True)],
+            "choose another unit of length",
+        ),
         ([Circle((1e6, 0), 1e-9)], "curve 0 (Circle around (1e+06, 0)) is 2.1e-09 long or wide"),
     ],
 )

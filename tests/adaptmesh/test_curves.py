@@ -184,6 +184,7 @@ def broken(t):
         (lambda: Parametric(lambda t: np.stack([t, t], 1), closed=True), "ends 1.41421 from"),
         (lambda: Parametric(lambda t: np.stack([t, t], 1), lambda t: t), "derivative returned"),
         (lambda: Parametric(lambda t: np.stack([t, t], 1), breaks=[1.5]), "breaks"),
+        (lambda: Circle((0, 0), 1e80), "another unit of length"),
         (lambda: Line((0, 0), (1, 0)).part(0.5, 0.5), "no part"),
         (lambda: Line((0, 0), (1, 0)).part(0.5, 1.5), "no part"),
     ],
