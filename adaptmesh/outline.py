@@ -6,16 +6,16 @@ import itertools
 from collections.abc import Callable, Iterator
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from . import _core
 from .curves import Curve
 from .domain import Domain
-from .domain_input import Label, labelled
+from .domain_input import labelled
 from .errors import DomainError
 from .invariants import local
 from .invariants.subject import Finding, Subject, edge_keys
 from .mesh import Mesh
+from .parts import hole_points, region_points, regions_beside
 from .smoothed import smooth_curves
 
 Floats = NDArray[np.float64]
@@ -24,8 +24,6 @@ Ints = NDArray[np.int32]
 # Vertices nearer than this share of the extent of the mesh to a straight line lie on it: about what
 # rounding and text files of 12 digits leave of a straight boundary.
 STRAIGHT = 1e-12
-
-OUTSIDE = -(2**40)  # a number that no region has
 
 
 def domain_of_mesh(mesh: Mesh, corner_angle: float | None = None) -> Domain:
@@ -63,7 +61,7 @@ def domain_of_mesh(mesh: Mesh, corner_angle: float | None = None) -> Domain:
 
     used, renumbered = np.unique(np.array(segments), return_inverse=True)
     points, pairs = mesh.points[used], renumbered.reshape(-1, 2).astype(np.int32)
-    holes, regions = _hole_points(mesh, points, pairs), _region_points(mesh, edges)
+    holes, regions = hole_points(mesh, points, pairs), region_points(mesh, edges)
     lone = mesh.points[np.setdiff1d(np.intersect1d(mesh.required_points, mesh.triangles), edges)]
     if corner_angle is None:
         points = np.concatenate([points, lone])
@@ -130,27 +128,6 @@ def check_is_mesh(mesh: object) -> None:
         raise DomainError(f"a Mesh is wanted, not {type(mesh).__name__}: generate makes one")
 
 
-def _half_edges(triangles: Ints) -> tuple[Ints, Ints]:
-    """The directed edges of all triangles, (3 m, 2), and the triangle of each."""
-    halves = np.concatenate([triangles[:, [1, 2]], triangles[:, [2, 0]], triangles[:, [0, 1]]])
-    return halves, np.tile(np.arange(len(triangles), dtype=np.int32), 3)
-
-
-def _triangles_beside(triangles: Ints, edges: Ints, n_points: int) -> tuple[Ints, Ints]:
-    """The triangle on the left and on the right of each edge, -1 where there is none."""
-    halves, owner = _half_edges(triangles)
-    keys = halves[:, 0].astype(np.int64) * n_points + halves[:, 1]
-    order = np.argsort(keys)
-    keys, owner = keys[order], owner[order]
-
-    def left_of(a: Ints, b: Ints) -> Ints:
-        wanted = a.astype(np.int64) * n_points + b
-        at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
-        return np.where(keys[at] == wanted, owner[at], -1).astype(np.int32)
-
-    return left_of(edges[:, 0], edges[:, 1]), left_of(edges[:, 1], edges[:, 0])
-
-
 def with_interfaces(mesh: Mesh) -> tuple[Ints, Ints]:
     """The constrained edges and their tags; then, with tag 0, what else bounds or parts regions."""
     edges = mesh.unique_edges
@@ -164,13 +141,6 @@ def with_interfaces(mesh: Mesh) -> tuple[Ints, Ints]:
         np.concatenate([mesh.edges, missing]),
         np.concatenate([mesh.edge_tags, np.zeros(len(missing), np.int32)]),
     )
-
-
-def regions_beside(triangles: Ints, regions: Ints, edges: Ints, n_points: int) -> Ints:
-    """The regions on the left and right of each edge, (e, 2), `OUTSIDE` for the outside."""
-    beside = _triangles_beside(triangles, edges, n_points)
-    out: Ints = np.append(regions.astype(np.int64), OUTSIDE)[np.stack(beside, axis=1)]
-    return out
 
 
 def _chains(
@@ -238,73 +208,4 @@ def _distances(p: Floats, a: Floats, b: Floats) -> Floats:
     if norm == 0.0:
         return np.hypot(w[:, 0], w[:, 1])
     out: Floats = np.abs(w[:, 0] * d[1] - w[:, 1] * d[0]) / norm
-    return out
-
-
-def _hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
-    """A point inside every hole: those parts of the filled outline that the mesh does not cover."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    nowhere = np.empty((0, 2))
-    try:
-        filled, _, pieces, _, _ = _core.triangulate(points, segments, nowhere, nowhere, False)
-    except _core.Fault as fault:
-        *_, x, y = fault.args
-        raise DomainError(
-            f"the mesh lies over itself near ({x:.17g}, {y:.17g}), so it covers no domain; its "
-            "validate() lists what is wrong"
-        ) from None
-    halves, owner = _half_edges(filled)
-    keys = edge_keys(halves[:, 0], halves[:, 1], len(points))
-    order = np.argsort(keys, kind="stable")
-    same = np.flatnonzero(keys[order][:-1] == keys[order][1:])
-    open_ = same[~np.isin(keys[order][same], edge_keys(pieces[:, 0], pieces[:, 1], len(points)))]
-    links = owner[order][open_], owner[order][open_ + 1]
-    graph = coo_array((np.ones(len(open_)), links), shape=(len(filled), len(filled)))
-    _, part = connected_components(graph, directed=False)
-
-    # The largest triangle of each part stands for it.
-    p = points[filled]
-    u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-    by_area = np.argsort(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])[::-1]
-    _, first = np.unique(part[by_area], return_index=True)
-    centres = p[by_area[first]].mean(axis=1)
-    out: Floats = centres[~_covered(mesh, centres)]
-    return out
-
-
-def _covered(mesh: Mesh, places: Floats) -> NDArray[np.bool_]:
-    """Which of the places lie in a triangle of the mesh, by exact signs: some are on its sides."""
-    a, b, c = mesh.points[mesh.triangles].transpose(1, 0, 2).copy()
-    out = np.zeros(len(places), bool)
-    for i, place in enumerate(places):
-        x = np.tile(place, (len(a), 1))
-        signs = [_core.orient2d(*side, x) for side in ((a, b), (b, c), (c, a))]
-        out[i] = (np.min(signs, axis=0) >= 0).any()
-    return out
-
-
-def _region_points(mesh: Mesh, edges: Ints) -> dict[Label, ArrayLike]:
-    """For each region but 0 a point in each of its parts."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    left, right = _triangles_beside(mesh.triangles, mesh.unique_edges, len(mesh.points))
-    n = len(mesh.points)
-    free = ~np.isin(
-        edge_keys(mesh.unique_edges[:, 0], mesh.unique_edges[:, 1], n),
-        edge_keys(edges[:, 0], edges[:, 1], n),
-    )
-    free &= (left >= 0) & (right >= 0)
-    m = len(mesh.triangles)
-    graph = coo_array((np.ones(free.sum()), (left[free], right[free])), shape=(m, m))
-    _, part = connected_components(graph, directed=False)
-
-    by_area = np.argsort(mesh.areas)[::-1]
-    out: dict[Label, ArrayLike] = {}
-    for number in np.unique(mesh.regions[mesh.regions != 0]).tolist():
-        mine = by_area[mesh.regions[by_area] == number]
-        _, first = np.unique(part[mine], return_index=True)
-        out[number] = mesh.points[mesh.triangles[mine[first]]].mean(axis=1)
     return out

@@ -17,11 +17,12 @@ If the number of points is 0 they are in the .node file beside.
 from __future__ import annotations
 
 import os
-import re
 from pathlib import Path
 
 from .io.triangle_tables import Table, read_points, read_segments
 from .raw import Outline
+
+_LARGEST_TAG = 2**31 - 1
 
 
 def read_poly(path: str | os.PathLike[str]) -> Outline:
@@ -37,8 +38,8 @@ def read_poly(path: str | os.PathLike[str]) -> Outline:
     Outline
         What the file says, unchecked. Segments with a marker other than 0 have it as their tag, and
         for a name its decimal form (``"2"``), unless a comment of ours says what it is; regions are
-        named after their attribute. Area limits of regions are not used: sizes are the business of
-        the metric.
+        named after their attribute, likewise. Area limits of regions are not used: sizes are the
+        business of the metric.
 
     Raises
     ------
@@ -59,16 +60,21 @@ def read_poly(path: str | os.PathLike[str]) -> Outline:
         if tag:
             names.setdefault(said.get(tag, str(tag)), []).append(i)
     tags = {name: int(markers[numbers[0]]) for name, numbers in names.items()}
-    regions = _regions(table) if table else {}
-    region_tags = {name: int(name) for name in regions if re.fullmatch(r"-?\d+", name)}
+    regions, region_tags = _regions(table) if table else ({}, {})
     return Outline(points.places, segments, holes, regions, names, tags, region_tags)
 
 
-def _regions(table: Table) -> dict[str, list[tuple[float, float]]]:
-    """Seeds of each region attribute."""
+def _regions(table: Table) -> tuple[dict[str, list[tuple[float, float]]], dict[str, int]]:
+    """Seeds of each region attribute, by its name, and whole numbers of names."""
+    said = {float(number): name for name, number in table.names("regions").items()}
+    tags: dict[str, int] = {}
     regions: dict[str, list[tuple[float, float]]] = {}
     (count,) = table.header("regions")
     rows = table.rows("region", count, 4)
     for _, x, y, attribute in rows.tolist():
-        regions.setdefault(f"{attribute:g}", []).append((x, y))
-    return regions
+        is_whole = attribute == int(attribute) and abs(attribute) <= _LARGEST_TAG
+        name = said.get(attribute, str(int(attribute)) if is_whole else f"{attribute:g}")
+        regions.setdefault(name, []).append((x, y))
+        if is_whole:
+            tags[name] = int(attribute)
+    return regions, tags

@@ -18,7 +18,7 @@ from .domain import Domain
 from .domain_input import labelled
 from .errors import DomainError
 from .loops import small_loops
-from .outline import regions_beside
+from .parts import regions_beside
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

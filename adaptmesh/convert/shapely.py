@@ -30,7 +30,7 @@ def to_shapely(domain: Domain) -> dict[str | None, MultiPolygon]:
     """
     import shapely
 
-    from ..outline import regions_beside
+    from ..parts import regions_beside
 
     n, pieces = len(domain.points), domain.pieces
     beside = regions_beside(domain.triangles, domain.triangle_regions, pieces, n)

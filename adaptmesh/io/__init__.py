@@ -26,6 +26,7 @@ from metrics.control import Metric
 
 from ..errors import FormatError
 from ..mesh import Mesh
+from ..parts import seeds_in
 from ..required import required_items
 from .content import Array, fields_of, mesh_of
 from .files import read_bytes, replace_files
@@ -148,6 +149,8 @@ def write(
         content = outgoing(mesh, metric, fields, triangle_fields or {})
         if target.required:
             content.required_points, content.required_edges = required_items(mesh)
+        if target.seeds:
+            content.hole_seeds, content.region_seeds = seeds_in(mesh)
         files = target.save(path, content, **given)
     replace_files(files)
 

@@ -23,7 +23,8 @@ class Content:
     """Arrays and names of one file, not yet checked against one another.
 
     Points are (n, 2) or (n, 3); fields are at the points or at the triangles; the metric is
-    packed (m11, m12, m22). What is required are vertex numbers and rows of the edges.
+    packed (m11, m12, m22). What is required are vertex numbers and rows of the edges. Seeds are
+    points in holes (k, 2), and by number in the parts of regions.
     """
 
     points: Array
@@ -38,6 +39,8 @@ class Content:
     metric: Array | None = None
     required_points: Array = field(default_factory=lambda: np.empty(0, np.int64))
     required_edges: Array = field(default_factory=lambda: np.empty(0, np.int64))
+    hole_seeds: Array = field(default_factory=lambda: np.empty((0, 2)))
+    region_seeds: Mapping[int, Array] = field(default_factory=dict)
 
 
 def refuse_cells(counts: Mapping[str, int]) -> None:

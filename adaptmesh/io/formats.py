@@ -28,12 +28,15 @@ class Format:
         The keywords of `save`.
     required : bool
         Whether it can tell which vertices and edges every mesh has to keep.
+    seeds : bool
+        Whether it tells holes and regions by points in them.
     """
 
     load: Callable[[Path, bool], Content]
     save: Callable[..., Mapping[Path, bytes]]
     options: frozenset[str] = frozenset()
     required: bool = False
+    seeds: bool = False
 
 
 def _load_vtu(path: Path, fields: bool) -> Content:
@@ -133,7 +136,7 @@ FORMATS: dict[str, Format] = {
     ".mesh": Format(_load_medit, _save_medit, required=True),
     ".meshb": Format(_load_medit, _save_medit, required=True),
     ".xdmf": Format(_load_xdmf, _save_xdmf),
-    ".ele": Format(_load_triangle, _save_triangle),
+    ".ele": Format(_load_triangle, _save_triangle, seeds=True),
 }
 """Format by extension in lower case."""
 

@@ -9,7 +9,10 @@ https://www.cs.cmu.edu/~quake/triangle.node.html, and there .ele and .poly ::
     .poly   0 2 0 0                                        ... the points are in .node
             <segments> <0 or 1 marker>
             <number> <point> <point> [marker]              ... each constrained edge
-            <holes> ...
+            <holes>
+            <number> <x> <y>                               ... a point in each hole
+            <regions>
+            <number> <x> <y> <region>                      ... and in each part of each region
 
 Attributes of points are fields, the first of triangles is the region, the others are fields. What
 the formats have no place for is in comments, see `adaptmesh.io.triangle_tables`.
@@ -37,6 +40,8 @@ def encode(content: Content, path: Path) -> dict[Path, bytes]:
         point_fields["metric"] = content.metric
     of_points = [_columns(v) for v in point_fields.values()]
     of_triangles = [content.regions[:, None], *map(_columns, content.triangle_fields.values())]
+    seeds = np.concatenate([np.empty((0, 2)), *content.region_seeds.values()])
+    numbers = np.repeat([*content.region_seeds], [len(s) for s in content.region_seeds.values()])
     on_edge = np.zeros((n, 1), np.int64)
     on_edge[content.edges.ravel()] = 1
     node = [
@@ -52,10 +57,14 @@ def encode(content: Content, path: Path) -> dict[Path, bytes]:
     ]
     poly = [
         *_name_comments("edge_tags", content.names),
+        *_name_comments("regions", content.region_names),
         _header(0, 2, 0, 0),
         _header(k, 1),
         _rows(content.edges, content.edge_tags[:, None]),
-        _header(0),
+        _header(len(content.hole_seeds)),
+        _rows(content.hole_seeds),
+        _header(len(seeds)),
+        _rows(seeds, numbers[:, None]),
     ]
     files = {".node": node, ".poly": poly, ".ele": ele}
     return {

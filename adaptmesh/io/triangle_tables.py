@@ -6,7 +6,7 @@ whose further words do not matter; everything after ``#`` is a comment. In comme
     # adaptmesh                  first; the last line is then "# end", or the file was cut short
     # field 1 "u"                a field by its number of columns, in the order of attributes
     # edge_tags 3 "inlet"        the name of a tag, in .poly
-    # regions 7 "steel"          and of a region, in .ele
+    # regions 7 "steel"          and of a region, in .poly and .ele
 """
 
 from __future__ import annotations

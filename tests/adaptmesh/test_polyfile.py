@@ -1,5 +1,6 @@
 """Triangle's .poly format."""
 
+import numpy as np
 import pytest
 
 import adaptmesh as am
@@ -107,3 +108,25 @@ def test_names_that_we_wrote_come_back(tmp_path):
     domain = am.read_domain(tmp_path / "a.poly")
     assert domain.area == pytest.approx(1)
     assert dict(domain.names) == dict(mesh.names)
+
+
+def test_the_poly_of_a_mesh_has_its_holes_and_regions(tmp_path):
+    """It is the domain again, also without the triangles beside it."""
+    square = [(0, 0), (3, 0), (3, 1), (0, 1)]
+    hole = [(0.2, 0.2), (0.8, 0.2), (0.8, 0.8)]
+    points = np.array([*square, *hole, (1, 0), (1, 1), (2, 0), (2, 1)], float)
+    segments = [(0, 7), (7, 9), (9, 1), (1, 2), (2, 10), (10, 8), (8, 3), (3, 0)]
+    segments += [(4, 5), (5, 6), (6, 4), (7, 8), (9, 10)]
+    regions = {"steel": [(0.1, 0.5), (2.5, 0.5)], "air": [(1.5, 0.5)]}
+    domain = am.Domain(points, segments, [(0.7, 0.5)], regions, {"hole": [8, 9, 10]})
+    mesh = am.generate(domain, 0.3)
+    am.write(tmp_path / "a.ele", mesh)
+    (tmp_path / "a.ele").unlink()
+    again = am.read_domain(tmp_path / "a.poly")
+    assert again.area == pytest.approx(domain.area, rel=1e-12)
+    assert dict(again.names) == dict(domain.names)
+    assert dict(again.region_names) == dict(domain.region_names)
+    new = am.generate(again, 0.3)
+    for name, number in domain.region_names.items():
+        area = mesh.areas[mesh.regions == number].sum()
+        assert new.areas[new.regions == number].sum() == pytest.approx(area, rel=1e-12), name

@@ -1,0 +1,128 @@
+"""The parts that the edges of a mesh divide the plane into: holes, regions, and what lies beside.
+
+A point in each says to a triangulation of the edges alone what is what.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from .errors import DomainError
+from .invariants.subject import edge_keys
+from .mesh import Mesh
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+OUTSIDE = -(2**40)  # a number that no region has
+
+
+def seeds_in(mesh: Mesh) -> tuple[Floats, dict[int, Floats]]:
+    """Points (k, 2) in holes, and by number in the parts of each region but 0.
+
+    From these and the constrained edges alone follows what the mesh covers.
+    """
+    if not len(mesh.edges):
+        return np.empty((0, 2)), {}
+    used, renumbered = np.unique(mesh.edges, return_inverse=True)
+    segments = renumbered.reshape(-1, 2).astype(np.int32)
+    return hole_points(mesh, mesh.points[used], segments), region_points(mesh, mesh.edges)
+
+
+def hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
+    """A point inside every hole: those parts of the filled outline that the mesh does not cover."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    nowhere = np.empty((0, 2))
+    try:
+        filled, _, pieces, _, _ = _core.triangulate(points, segments, nowhere, nowhere, False)
+    except _core.Fault as fault:
+        *_, x, y = fault.args
+        raise DomainError(
+            f"the mesh lies over itself near ({x:.17g}, {y:.17g}), so it covers no domain; its "
+            "validate() lists what is wrong"
+        ) from None
+    halves, owner = _half_edges(filled)
+    keys = edge_keys(halves[:, 0], halves[:, 1], len(points))
+    order = np.argsort(keys, kind="stable")
+    same = np.flatnonzero(keys[order][:-1] == keys[order][1:])
+    open_ = same[~np.isin(keys[order][same], edge_keys(pieces[:, 0], pieces[:, 1], len(points)))]
+    links = owner[order][open_], owner[order][open_ + 1]
+    graph = coo_array((np.ones(len(open_)), links), shape=(len(filled), len(filled)))
+    _, part = connected_components(graph, directed=False)
+
+    # The largest triangle of each part stands for it.
+    p = points[filled]
+    u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    by_area = np.argsort(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])[::-1]
+    _, first = np.unique(part[by_area], return_index=True)
+    centres = p[by_area[first]].mean(axis=1)
+    out: Floats = centres[~_covered(mesh, centres)]
+    return out
+
+
+def _covered(mesh: Mesh, places: Floats) -> NDArray[np.bool_]:
+    """Which of the places lie in a triangle of the mesh, by exact signs: some are on its sides."""
+    a, b, c = mesh.points[mesh.triangles].transpose(1, 0, 2).copy()
+    out = np.zeros(len(places), bool)
+    for i, place in enumerate(places):
+        x = np.tile(place, (len(a), 1))
+        signs = [_core.orient2d(*side, x) for side in ((a, b), (b, c), (c, a))]
+        out[i] = (np.min(signs, axis=0) >= 0).any()
+    return out
+
+
+def region_points(mesh: Mesh, edges: Ints) -> dict[int, Floats]:
+    """For each region but 0 a point in each of its parts."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    left, right = _triangles_beside(mesh.triangles, mesh.unique_edges, len(mesh.points))
+    n = len(mesh.points)
+    free = ~np.isin(
+        edge_keys(mesh.unique_edges[:, 0], mesh.unique_edges[:, 1], n),
+        edge_keys(edges[:, 0], edges[:, 1], n),
+    )
+    free &= (left >= 0) & (right >= 0)
+    m = len(mesh.triangles)
+    graph = coo_array((np.ones(free.sum()), (left[free], right[free])), shape=(m, m))
+    _, part = connected_components(graph, directed=False)
+
+    by_area = np.argsort(mesh.areas)[::-1]
+    out: dict[int, Floats] = {}
+    for number in np.unique(mesh.regions[mesh.regions != 0]).tolist():
+        mine = by_area[mesh.regions[by_area] == number]
+        _, first = np.unique(part[mine], return_index=True)
+        out[number] = mesh.points[mesh.triangles[mine[first]]].mean(axis=1)
+    return out
+
+
+def regions_beside(triangles: Ints, regions: Ints, edges: Ints, n_points: int) -> Ints:
+    """The regions on the left and right of each edge, (e, 2), `OUTSIDE` for the outside."""
+    beside = _triangles_beside(triangles, edges, n_points)
+    out: Ints = np.append(regions.astype(np.int64), OUTSIDE)[np.stack(beside, axis=1)]
+    return out
+
+
+def _triangles_beside(triangles: Ints, edges: Ints, n_points: int) -> tuple[Ints, Ints]:
+    """The triangle on the left and on the right of each edge, -1 where there is none."""
+    halves, owner = _half_edges(triangles)
+    keys = halves[:, 0].astype(np.int64) * n_points + halves[:, 1]
+    order = np.argsort(keys)
+    keys, owner = keys[order], owner[order]
+
+    def left_of(a: Ints, b: Ints) -> Ints:
+        wanted = a.astype(np.int64) * n_points + b
+        at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+        return np.where(keys[at] == wanted, owner[at], -1).astype(np.int32)
+
+    return left_of(edges[:, 0], edges[:, 1]), left_of(edges[:, 1], edges[:, 0])
+
+
+def _half_edges(triangles: Ints) -> tuple[Ints, Ints]:
+    """The directed edges of all triangles, (3 m, 2), and the triangle of each."""
+    halves = np.concatenate([triangles[:, [1, 2]], triangles[:, [2, 0]], triangles[:, [0, 1]]])
+    return halves, np.tile(np.arange(len(triangles), dtype=np.int32), 3)
