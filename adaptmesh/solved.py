@@ -34,6 +34,7 @@ class Solution:
         the next mesh, but cannot steer it.
     metric : control space, (n, 3) or (n, 2, 2) array_like, optional
         Where this is given, it steers the mesh, and no field does. It is evaluated at the vertices.
+        The errors of the fields are estimated all the same, to tell when nothing changes any more.
     errors : mapping of str to float, or float, optional
         The solver's own estimates, in the place of that of the interpolation error.
     """

@@ -90,6 +90,7 @@ class Steering:
         if solved.metric is None:
             return self._recovered(mesh, solved)
         count = self._count(mesh, solved.errors)
+        errors = dict(solved.errors) or self._watched(mesh, solved)
         metric = solved.metric
         if count is None:
             metric = self.limits.applied(metric, mesh.points, mesh.triangles)
@@ -97,7 +98,7 @@ class Steering:
             metric = normalised(
                 metric, mesh.points, mesh.triangles, target_vertices=count, limits=self.limits
             )
-        return metric, dict(solved.errors)
+        return metric, errors
 
     def excess(self, errors: Mapping[str, float]) -> float:
         """The largest ratio of an error to what was asked for."""
@@ -115,9 +116,7 @@ class Steering:
             name: Curvature.of(points, triangles, values, self.recovery)
             for name, values in self._bent_fields(mesh, solved).items()
         }
-        errors = dict(solved.errors) or {
-            name: norm(c.interpolation_errors(self.p), self.p) for name, c in curvatures.items()
-        }
+        errors = dict(solved.errors) or self._estimates(curvatures)
         shares = None
         if self.error is not None and not solved.errors:
             shares = [self._wanted(name) for name in curvatures]
@@ -139,6 +138,28 @@ class Steering:
             combine=self.combine,
         )
         return metric, errors
+
+    def _watched(self, mesh: Mesh, solved: Solved) -> dict[str, float]:
+        """Errors of fields that do not steer, as there is a metric: they tell when all is settled.
+
+        The number of vertices, which is asked for, is what it is long before.
+        """
+        fields = solved.fields.items()
+        try:
+            return self._estimates(
+                {
+                    name: Curvature.of(mesh.points, mesh.triangles, values, self.recovery)
+                    for name, values in fields
+                    if _can_steer(values, mesh) and not is_constant(values)
+                }
+            )
+        except MetricError:  # on a mesh that is too coarse for derivatives there is nothing to tell
+            return {}
+
+    def _estimates(self, curvatures: Mapping[str, Curvature]) -> dict[str, float]:
+        return {
+            name: norm(c.interpolation_errors(self.p), self.p) for name, c in curvatures.items()
+        }
 
     def _bent_fields(self, mesh: Mesh, solved: Solved) -> dict[str, Array]:
         """The fields that steer and are not the same everywhere, (n, k)."""
