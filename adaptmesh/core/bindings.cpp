@@ -5,6 +5,7 @@ NB_MODULE(_core, m) {
     m.doc() = "The compiled core of adaptmesh: predicates, triangulation, mesher.";
     bind_predicates(m);
     bind_triangulate(m);
+    bind_sampler(m);
     bind_mesher(m);
     bind_transfer(m);
     bind_outlines(m);

@@ -7,16 +7,19 @@
 #include <chrono>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "adaptmesh/core/constrain.hpp"
 #include "adaptmesh/core/point.hpp"
+#include "metrics/core/tensor.hpp"
 
 namespace nb = nanobind;
 
 void bind_predicates(nb::module_& m);
 void bind_triangulate(nb::module_& m);
+void bind_sampler(nb::module_& m);
 void bind_mesher(nb::module_& m);
 void bind_transfer(nb::module_& m);
 void bind_outlines(nb::module_& m);
@@ -45,6 +48,18 @@ inline std::vector<adaptmesh::Segment> to_segments(const IndexPairs& array) {
     std::vector<adaptmesh::Segment> segments(array.shape(0));
     for (std::size_t i = 0; i < segments.size(); ++i) segments[i] = {array(i, 0), array(i, 1)};
     return segments;
+}
+
+inline metrics::Tensor tensor_in(const Tensors& array, std::size_t i) {
+    return {array(i, 0), array(i, 1), array(i, 2)};
+}
+
+inline void expect_rows(std::size_t got, std::size_t wanted, const char* what) {
+    if (got != wanted) {
+        throw nb::value_error((std::string(what) + ": " + std::to_string(got) + " rows, expected " +
+                               std::to_string(wanted))
+                                  .c_str());
+    }
 }
 
 // A numpy array that owns `values`; no copy.
