@@ -33,9 +33,6 @@ def seeds_in(mesh: Mesh) -> tuple[Floats, dict[int, Floats]]:
 
 def hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
     """A point inside every hole: those parts of the filled outline that the mesh does not cover."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     nowhere = np.empty((0, 2))
     try:
         filled, _, pieces, _, _ = _core.triangulate(points, segments, nowhere, nowhere, False)
@@ -45,14 +42,7 @@ def hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
             f"the mesh lies over itself near ({x:.17g}, {y:.17g}), so it covers no domain; its "
             "validate() lists what is wrong"
         ) from None
-    halves, owner = _half_edges(filled)
-    keys = edge_keys(halves[:, 0], halves[:, 1], len(points))
-    order = np.argsort(keys, kind="stable")
-    same = np.flatnonzero(keys[order][:-1] == keys[order][1:])
-    open_ = same[~np.isin(keys[order][same], edge_keys(pieces[:, 0], pieces[:, 1], len(points)))]
-    links = owner[order][open_], owner[order][open_ + 1]
-    graph = coo_array((np.ones(len(open_)), links), shape=(len(filled), len(filled)))
-    _, part = connected_components(graph, directed=False)
+    part = _parts_between(filled, pieces, len(points))
 
     # The largest triangle of each part stands for it.
     p = points[filled]
@@ -77,20 +67,7 @@ def _covered(mesh: Mesh, places: Floats) -> NDArray[np.bool_]:
 
 def region_points(mesh: Mesh, edges: Ints) -> dict[int, Floats]:
     """For each region but 0 a point in each of its parts."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    left, right = _triangles_beside(mesh.triangles, mesh.unique_edges, len(mesh.points))
-    n = len(mesh.points)
-    free = ~np.isin(
-        edge_keys(mesh.unique_edges[:, 0], mesh.unique_edges[:, 1], n),
-        edge_keys(edges[:, 0], edges[:, 1], n),
-    )
-    free &= (left >= 0) & (right >= 0)
-    m = len(mesh.triangles)
-    graph = coo_array((np.ones(free.sum()), (left[free], right[free])), shape=(m, m))
-    _, part = connected_components(graph, directed=False)
-
+    part = _parts_between(mesh.triangles, edges, len(mesh.points))
     by_area = np.argsort(mesh.areas)[::-1]
     out: dict[int, Floats] = {}
     for number in np.unique(mesh.regions[mesh.regions != 0]).tolist():
@@ -98,6 +75,23 @@ def region_points(mesh: Mesh, edges: Ints) -> dict[int, Floats]:
         _, first = np.unique(part[mine], return_index=True)
         out[number] = mesh.points[mesh.triangles[mine[first]]].mean(axis=1)
     return out
+
+
+def _parts_between(triangles: Ints, walls: Ints, n_points: int) -> NDArray[np.intp]:
+    """The number of the part that each triangle is in; edges (w, 2) are walls between parts."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    halves, owner = _half_edges(triangles)
+    keys = edge_keys(halves[:, 0], halves[:, 1], n_points)
+    order = np.argsort(keys, kind="stable")
+    keys, owner = keys[order], owner[order]
+    same = np.flatnonzero(keys[:-1] == keys[1:])
+    open_ = same[~np.isin(keys[same], edge_keys(walls[:, 0], walls[:, 1], n_points))]
+    links = owner[open_], owner[open_ + 1]
+    graph = coo_array((np.ones(len(open_)), links), shape=(len(triangles), len(triangles)))
+    part: NDArray[np.intp] = connected_components(graph, directed=False)[1]
+    return part
 
 
 def regions_beside(triangles: Ints, regions: Ints, edges: Ints, n_points: int) -> Ints:

@@ -112,10 +112,7 @@ class Steering:
 
     def _recovered(self, mesh: Mesh, solved: Solved) -> tuple[Floats, dict[str, float]]:
         points, triangles = mesh.points, mesh.triangles
-        curvatures = {
-            name: Curvature.of(points, triangles, values, self.recovery)
-            for name, values in self._bent_fields(mesh, solved).items()
-        }
+        curvatures = self._curvatures(mesh, self._bent_fields(mesh, solved))
         errors = dict(solved.errors) or self._estimates(curvatures)
         shares = None
         if self.error is not None and not solved.errors:
@@ -144,17 +141,21 @@ class Steering:
 
         The number of vertices, which is asked for, is what it is long before.
         """
-        fields = solved.fields.items()
+        fields = {
+            name: values
+            for name, values in solved.fields.items()
+            if _can_steer(values, mesh) and not is_constant(values)
+        }
         try:
-            return self._estimates(
-                {
-                    name: Curvature.of(mesh.points, mesh.triangles, values, self.recovery)
-                    for name, values in fields
-                    if _can_steer(values, mesh) and not is_constant(values)
-                }
-            )
+            return self._estimates(self._curvatures(mesh, fields))
         except MetricError:  # on a mesh that is too coarse for derivatives there is nothing to tell
             return {}
+
+    def _curvatures(self, mesh: Mesh, fields: Mapping[str, Array]) -> dict[str, Curvature]:
+        return {
+            name: Curvature.of(mesh.points, mesh.triangles, values, self.recovery)
+            for name, values in fields.items()
+        }
 
     def _estimates(self, curvatures: Mapping[str, Curvature]) -> dict[str, float]:
         return {
