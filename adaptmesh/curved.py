@@ -16,6 +16,7 @@ from .curves import Curve
 from .domain_input import Floats, Inside, Ints, read_only
 from .errors import DomainError
 from .runs import Run, are_near, join, points_on
+from .value import Value
 
 JOINED = 1e-12
 JOINED_PLACES = 8
@@ -41,7 +42,7 @@ GAUSS = np.polynomial.legendre.leggauss(10)
 
 
 @dataclass(frozen=True, eq=False)
-class Curved:
+class Curved(Value):
     """Which points and segments of a domain are on curves.
 
     Attributes

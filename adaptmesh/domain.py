@@ -29,6 +29,7 @@ from .domain_input import (
 from .errors import DomainError
 from .periodic import Motion, PeriodicPair, periodic_pair
 from .runs import points_on
+from .value import Value
 
 if TYPE_CHECKING:
     from .mesh import Mesh
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
 SMALLEST_TOLERANCE = 1e-10  # of `Domain.outline`, as a share of the extent
 
 
-class Domain:
+class Domain(Value):
     """A planar domain: straight segments between points, with holes, regions and names.
 
     `from_curves` makes one of curves. Everything is checked here, so that a domain that exists can

@@ -5,13 +5,13 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import DomainError
+from .value import FrozenMapping
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -181,7 +181,7 @@ def numbered(
             names[label] = int(given[label]) if label in given else next(free)
         numbers.append(names[label] if isinstance(label, str) else label)
     names.update({name: int(number) for name, number in given.items()})
-    return MappingProxyType(names), numbers
+    return FrozenMapping(names), numbers
 
 
 def _checked_label(label: object, what: str) -> Label:

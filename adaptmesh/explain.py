@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +25,7 @@ from .report import (
     ratio_to_unit,
     triangle_entries,
 )
+from .value import FrozenMapping, Value
 
 if TYPE_CHECKING:
     from .mesh import Mesh
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 __all__ = ["Explanation", "explain"]
 
 
-@dataclass(frozen=True)
-class Explanation:
+@dataclass(frozen=True, eq=False)
+class Explanation(Value):
     """The edges that are not unit and the bad triangles of a mesh, each with a reason; print it.
 
     Attributes
@@ -144,4 +144,4 @@ def explain(
 
 
 def _counted(items: tuple[WorstEdge, ...] | tuple[WorstTriangle, ...]) -> Mapping[Cause, int]:
-    return MappingProxyType(dict(Counter(item.reason.cause for item in items).most_common()))
+    return FrozenMapping(dict(Counter(item.reason.cause for item in items).most_common()))

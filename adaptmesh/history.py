@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from .mesh import Mesh
 from .solved import Solved
+from .value import Value
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -49,7 +50,7 @@ STAGES = ("adapt", "transfer", "solve", "metric")
 
 
 @dataclass(frozen=True, eq=False)
-class Snapshot:
+class Snapshot(Value):
     """The arrays of an iteration.
 
     Attributes
@@ -80,7 +81,7 @@ class OnDisk:
 
 
 @dataclass(frozen=True, eq=False)
-class Iteration:
+class Iteration(Value):
     """A mesh, what was solved on it, and the metric for the next.
 
     Attributes
@@ -126,7 +127,7 @@ class Iteration:
 
 
 @dataclass(frozen=True, eq=False)
-class History(Sequence[Iteration]):
+class History(Value, Sequence[Iteration]):
     """The iterations of a loop, in order; a sequence of `Iteration`.
 
     Attributes

@@ -12,7 +12,6 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +21,7 @@ from .history import History, Iteration, OnDisk, Seconds, Snapshot
 from .io.files import read_bytes, replace_files
 from .solved import Solved
 from .stored import damage_named, decoded, encoded
+from .value import FrozenMapping
 
 if TYPE_CHECKING:
     from .domain import Domain
@@ -114,7 +114,7 @@ def read_snapshot(path: Path, domain: Domain | None) -> Snapshot:
     with damage_named(path):
         fields = {name: arrays[f"field_{k}"] for k, name in enumerate(notes["fields"])}
         given = arrays["given"] if notes["metric_was_given"] else None
-        solved = Solved(MappingProxyType(fields), notes["is_bare"], given, notes["errors"])
+        solved = Solved(FrozenMapping(fields), notes["is_bare"], given, notes["errors"])
         return Snapshot(mesh, solved, arrays["metric"])
 
 
@@ -151,7 +151,7 @@ def _iteration(numbers: Mapping[str, Any], folder: Path, domain: Domain | None) 
         number=number,
         n_points=int(numbers["n_points"]),
         n_triangles=int(numbers["n_triangles"]),
-        errors=MappingProxyType({str(k): float(v) for k, v in numbers["errors"].items()}),
+        errors=FrozenMapping({str(k): float(v) for k, v in numbers["errors"].items()}),
         unit_fraction=np.nan if unit is None else float(unit),
         seconds=Seconds(**numbers["seconds"]),
         kept=OnDisk(folder / _name(number), domain),

@@ -27,6 +27,7 @@ from .steering import Steering, check_reachable
 from .stopping import Budget, StoppingRule
 from .transfer import METHODS
 from .transfer import transfer as transferred
+from .value import FrozenMapping
 
 SHARE_OF_EXTENT = 0.25  # the largest size, where none is given
 UNIT = (np.sqrt(0.5), np.sqrt(2.0))
@@ -261,7 +262,7 @@ class Work:
             number=len(history),
             n_points=len(mesh.points),
             n_triangles=len(mesh.triangles),
-            errors=MappingProxyType(errors),
+            errors=FrozenMapping(errors),
             unit_fraction=unit,
             seconds=clock.seconds,
             kept=Snapshot(mesh, solved, metric),

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from metrics.measure import mesh_edges
 
 from .mesh_arrays import frozen_integers, frozen_reals, numbers, rows
+from .value import FrozenMapping, Value
 
 if TYPE_CHECKING:
     from .domain import Domain
@@ -24,7 +24,7 @@ Ints = NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Mesh:
+class Mesh(Value):
     """A conforming triangle mesh; it never changes.
 
     Parameters
@@ -85,8 +85,8 @@ class Mesh:
             put("kept", frozen_integers(kept, "number kept"))
         for name in ("required_points", "required_edges"):
             put(name, frozen_integers(np.ravel(getattr(self, name)), name))
-        put("names", MappingProxyType(dict(self.names)))
-        put("region_names", MappingProxyType(dict(self.region_names)))
+        put("names", FrozenMapping(dict(self.names)))
+        put("region_names", FrozenMapping(dict(self.region_names)))
 
     def __repr__(self) -> str:
         names = ", ".join([*self.names, *self.region_names])

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from .chords import Chords, Surroundings, chords_along
 from .errors import DomainError
 from .runs import Run
+from .value import Value
 
 if TYPE_CHECKING:
     from .domain import Domain
@@ -39,7 +40,7 @@ _NEWTON = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class Motion(Value):
     """A rigid motion of the plane: x to turn x + shift."""
 
     turn: Floats
@@ -75,7 +76,7 @@ def _vector(value: ArrayLike, what: str) -> Floats:
 
 
 @dataclass(frozen=True, eq=False)
-class PeriodicPair:
+class PeriodicPair(Value):
     """Two boundaries by name, and what of the one is carried to what of the other.
 
     Attributes

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from .domain import Domain
 from .domain_input import ByLabel, labelled
 from .errors import DomainError, FormatError
+from .value import Value
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon, Polygon
@@ -20,7 +21,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
+class Outline(Value):
     """Points and segments that may be dirty: what `repair` makes a `Domain` of.
 
     The fields are the arguments of `Domain`, and mean the same. Nothing is checked.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -15,6 +14,7 @@ from metrics.measure import edge_lengths, mesh_edges, metric_areas
 from .adapt import control_space_on
 from .reasons import MET, Reason, Reasons
 from .validate import InvalidMeshError
+from .value import FrozenMapping, Value
 
 if TYPE_CHECKING:
     from .mesh import Mesh
@@ -70,8 +70,8 @@ class WorstTriangle(NamedTuple):
     reason: Reason
 
 
-@dataclass(frozen=True)
-class Report:
+@dataclass(frozen=True, eq=False)
+class Report(Value):
     """How unit a mesh is in a metric; print it.
 
     With l the metric length of an edge, over all edges, and Q the quality of a triangle,
@@ -208,7 +208,7 @@ def measure(mesh: Mesh, metric: Any) -> Report:
         length_min=float(lengths.min()),
         length_mean=float(lengths.mean()),
         length_max=float(lengths.max()),
-        length_quantiles=MappingProxyType(
+        length_quantiles=FrozenMapping(
             dict(zip(QUANTILES, np.quantile(lengths, QUANTILES).tolist(), strict=True))
         ),
         quality_min=float(quality.min()),

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .curves import Curve
+from .value import Value
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -27,7 +28,7 @@ Index = NDArray[np.integer]
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class Run(Value):
     """Curves from corner to corner, with no corner between.
 
     Attributes

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from metrics import ControlSpace, tensor
 from .errors import MetricError
 from .mesh import Mesh
 from .spaces import as_field, sizes
+from .value import FrozenMapping, Value
 
 Floats = NDArray[np.float64]
 Array = NDArray[Any]
@@ -24,7 +24,7 @@ UNNAMED_ERROR = "error"  # the name of an error that is returned as a bare numbe
 
 
 @dataclass(frozen=True, eq=False)
-class Solution:
+class Solution(Value):
     """What a solve can tell `adapt_loop`, where it is more than its fields.
 
     Parameters
@@ -45,7 +45,7 @@ class Solution:
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
+class Solved(Value):
     """A solution, checked: arrays are copies, and read-only.
 
     Attributes
@@ -86,7 +86,7 @@ def as_solved(answer: Any, mesh: Mesh, giver: str = "solve") -> Solved:
     metric = None if given.metric is None else _checked_metric(given.metric, mesh)
     if not fields and metric is None:
         raise TypeError(f"{giver} returned neither fields nor a metric")
-    return Solved(MappingProxyType(fields), is_bare, metric, _checked_errors(given.errors))
+    return Solved(FrozenMapping(fields), is_bare, metric, _checked_errors(given.errors))
 
 
 def _as_solution(answer: Any, mesh: Mesh, giver: str) -> Solution:
@@ -158,13 +158,13 @@ def _checked_metric(metric: Any, mesh: Mesh) -> Floats:
 
 def _checked_errors(errors: Any) -> Mapping[str, float]:
     if errors is None:
-        return MappingProxyType({})
+        return FrozenMapping({})
     named = errors if isinstance(errors, Mapping) else {UNNAMED_ERROR: errors}
     out = {str(name): float(value) for name, value in named.items()}
     for name, value in out.items():
         if not 0 <= value < np.inf:
             raise ValueError(f"the estimate {name!r} must be finite and not negative, not {value}")
-    return MappingProxyType(out)
+    return FrozenMapping(out)
 
 
 def _frozen(array: Array) -> Array:

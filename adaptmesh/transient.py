@@ -21,7 +21,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -43,6 +42,7 @@ from .steering_in_time import SteeringInTime
 from .transfer import METHODS
 from .transfer import transfer as transferred
 from .transient_history import Interval, TransientHistory
+from .value import FrozenMapping
 
 Floats = NDArray[np.float64]
 
@@ -251,7 +251,7 @@ class _Solver:
             first=first.fields,
             last=last.fields,
             times=np.array(times),
-            hessians=MappingProxyType(dict(over_time)),
+            hessians=FrozenMapping(dict(over_time)),
             seconds=clock.seconds,
             is_bare=first.is_bare,
         )

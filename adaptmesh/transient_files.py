@@ -12,7 +12,6 @@ import itertools
 import json
 from dataclasses import asdict
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from .errors import FormatError
@@ -21,6 +20,7 @@ from .history_files import make
 from .io.files import read_bytes, replace_files
 from .stored import damage_named, decoded, encoded
 from .transient_history import Fields, Interval, TransientHistory
+from .value import FrozenMapping
 
 if TYPE_CHECKING:
     from .domain import Domain
@@ -98,7 +98,7 @@ def _interval(path: Path, domain: Domain | None) -> Interval:
     mesh, arrays, notes = decoded(path, domain)
     with damage_named(path):
         mappings = {
-            name: MappingProxyType({n: arrays[f"{name}_{k}"] for k, n in enumerate(notes[name])})
+            name: FrozenMapping({n: arrays[f"{name}_{k}"] for k, n in enumerate(notes[name])})
             for name in MAPPINGS
         }
         return Interval(

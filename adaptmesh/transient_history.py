@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from .history import PathLike, Seconds
 from .mesh import Mesh
+from .value import Value
 
 if TYPE_CHECKING:
     from .domain import Domain
@@ -21,7 +22,7 @@ Fields = Mapping[str, NDArray[Any]]
 
 
 @dataclass(frozen=True, eq=False)
-class Interval:
+class Interval(Value):
     """What happened on one mesh.
 
     Attributes
@@ -52,7 +53,7 @@ class Interval:
 
 
 @dataclass(frozen=True, eq=False)
-class TransientHistory:
+class TransientHistory(Value):
     """The intervals of each sweep; print it.
 
     Attributes

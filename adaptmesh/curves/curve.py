@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import DomainError
+from ..value import Value
 
 Floats = NDArray[np.float64]
 
 
-class Curve(ABC):
+class Curve(Value, ABC):
     """A planar curve: a function of t in [0, 1], smooth but for its `breaks`.
 
     A subclass gives `_point` and `_derivative` of t (n,); what it returns is checked here.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +14,7 @@ from .curve import Curve, Floats
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline as ScipyBSpline
+    from scipy.interpolate import CubicSpline
 
 
 class Bezier(Curve):
@@ -47,8 +49,6 @@ class Spline(Curve):
     """
 
     def __init__(self, points: ArrayLike, closed: bool = False) -> None:
-        from scipy.interpolate import CubicSpline
-
         p = checked_points(points, "Spline", 3 if closed else 2)
         if closed and (p[0] != p[-1]).any():
             p = np.concatenate([p, p[:1]])
@@ -56,7 +56,13 @@ class Spline(Curve):
         self.points, self.is_closed = p, closed
         along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(p, axis=0).T))])
         self._t = along / along[-1]
-        self._spline = CubicSpline(self._t, p, bc_type="periodic" if closed else "not-a-knot")
+
+    @cached_property
+    def _spline(self) -> CubicSpline:
+        from scipy.interpolate import CubicSpline
+
+        ends = "periodic" if self.is_closed else "not-a-knot"
+        return CubicSpline(self._t, self.points, bc_type=ends)
 
     @property
     def knots(self) -> Floats:
@@ -113,8 +119,15 @@ class BSpline(Curve):
             p, w = (np.concatenate([a, a[:degree]]) for a in (p, w))
         self.control_points, self.weights = p, w
         self._u = self._checked_knots(knots)
-        self._spline = self._with_coefficients(np.column_stack([p * w[:, None], w]))
-        self._slope = self._spline.derivative()
+
+    @cached_property
+    def _spline(self) -> ScipyBSpline:
+        w = self.weights[:, None]
+        return self._with_coefficients(np.column_stack([self.control_points * w, w]))
+
+    @cached_property
+    def _slope(self) -> ScipyBSpline:
+        return self._spline.derivative()
 
     @property
     def breaks(self) -> Floats:
