@@ -33,7 +33,7 @@ from .curves import Bezier, Curve, Line
 from .domain import Domain
 from .domain_input import LARGEST, Label, labelled
 from .errors import FormatError
-from .io.files import read_bytes
+from .io.files import read_text
 from .io.located import located
 from .io.records import TextCursor, one
 
@@ -55,9 +55,9 @@ def read_bamg_geometry(path: Path) -> Domain:
     References of edges become tags, those of subdomains the numbers of regions. What subdomains
     leave out is a hole; without any, all that edges enclose is meshed.
     """
-    data = read_bytes(path)
+    text = read_text(path)
     with located(path):
-        return _Geometry.of(data).domain()
+        return _Geometry.of(text).domain()
 
 
 @dataclass
@@ -76,8 +76,8 @@ class _Geometry:
     subdomains: Integers = field(default_factory=lambda: np.empty((0, 4), np.int64))
 
     @classmethod
-    def of(cls, data: bytes) -> _Geometry:
-        cursor = TextCursor(re.sub(rb"#[^\n]*", b"", data))
+    def of(cls, text: str) -> _Geometry:
+        cursor = TextCursor(re.sub(r"#[^\n]*", "", text).encode())
         if cursor.word() != b"MeshVersionFormatted":
             raise FormatError("does not start with MeshVersionFormatted: it is no BAMG geometry")
         one(cursor)

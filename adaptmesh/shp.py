@@ -1,20 +1,31 @@
 """Shapefiles of geographic information systems, read by pyshp: ``.shp``, with names in ``.dbf``.
 
 The attribute ``name``, in any case, names the region of each polygon; without a ``.dbf`` beside the
-``.shp`` none has a name. Measures at the points are passed over.
+``.shp`` none has a name. It is in the encoding that the ``.cpg`` or the header of the ``.dbf``
+names, else, and where that cannot be, in one of `metrics.text`. Measures at the points are passed
+over.
 """
 
 from __future__ import annotations
 
+import codecs
+import contextlib
 import struct
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 from .errors import DomainError, FormatError
-from .io.files import read_bytes
+from .io.files import read_bytes, text_of
 from .io.located import refusing
 from .raw import Shape
+
+_LANGUAGES = {
+    b"\x01": "cp437", b"\x02": "cp850", b"\x03": "cp1252", b"\x13": "cp932", b"\x4d": "cp936",
+    b"\x4e": "cp949", b"\x4f": "cp950", b"\x57": "cp1252", b"\x64": "cp852", b"\x65": "cp866",
+    b"\x66": "cp865", b"\xc8": "cp1250", b"\xc9": "cp1251", b"\xca": "cp1254", b"\xcb": "cp1253",
+}  # fmt: skip
+"""Encodings by the language driver in the header of a ``.dbf``."""
 
 _HEADER = 100  # bytes; at 24 the length of the file, in units of 2 bytes
 
@@ -23,11 +34,12 @@ def read_shapefile(path: Path) -> list[Shape]:
     """The polygons of a shapefile, unchecked; a `FormatError` names the file."""
     pyshp = _import_pyshp()
     files = _contents(path)
+    encoding = _encoding(files.pop("cpg", None), files.get("dbf"))
     with (
         refusing(
             f"{path} is damaged, or no shapefile", pyshp.ShapefileException, pyshp.GeoJSON_Error
         ),
-        pyshp.Reader(**files) as reader,
+        pyshp.Reader(**files, encoding="latin-1") as reader,
     ):
         read = [
             (None, ())
@@ -35,7 +47,7 @@ def read_shapefile(path: Path) -> list[Shape]:
             else (shape.__geo_interface__, getattr(shape, "z", ()))
             for shape in reader.iterShapes()
         ]
-        names = _names(reader) if "dbf" in files else []
+        names = _names(reader, encoding) if "dbf" in files else []
     if not read:
         raise DomainError("it has no shapes: there is nothing to mesh")
     if names and len(names) != len(read):
@@ -50,14 +62,41 @@ def read_shapefile(path: Path) -> list[Shape]:
     ]
 
 
-def _names(reader: Any) -> list[str | None]:
-    """The attribute ``name`` of each record; nothing if there is none."""
+def _names(reader: Any, encoding: str | None) -> list[str | None]:
+    """The attribute ``name`` of each record; nothing if there is none.
+
+    As Latin-1 every byte is a character, so that the bytes of a name are known.
+    """
     fields = [field[0] for field in reader.fields]
     field = next((f for f in fields if f.lower() == "name"), None)
     if field is None:
         return []
     values = [record[field] for record in reader.iterRecords()]
-    return [None if value in (None, "") else str(value) for value in values]
+    return [None if value in (None, "") else _name(value, encoding) for value in values]
+
+
+def _name(value: object, encoding: str | None) -> str:
+    if not isinstance(value, str):
+        return str(value)
+    data = value.encode("latin-1")
+    if encoding is not None:
+        with contextlib.suppress(UnicodeDecodeError):
+            return data.decode(encoding)
+    return text_of(data)
+
+
+def _encoding(cpg: BytesIO | None, dbf: BytesIO | None) -> str | None:
+    """The encoding that the ``.cpg`` names, or the ``.dbf`` in its header; None if neither does."""
+    words = text_of(cpg.getvalue()).split() if cpg is not None else []
+    said = words[-1] if words else ""
+    if said.isdecimal():  # a code page of Windows or DOS, or 88591 for ISO 8859-1
+        said = f"iso8859-{said[4:]}" if said.startswith("8859") and said[4:] else f"cp{said}"
+    if not said and dbf is not None:
+        said = _LANGUAGES.get(dbf.getvalue()[29:30], "")
+    try:
+        return codecs.lookup(said).name if said else None
+    except LookupError:
+        return None
 
 
 def _contents(path: Path) -> dict[str, BytesIO]:

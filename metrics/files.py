@@ -16,6 +16,7 @@ import numpy as np
 from .arrays import Floats, Ints, as_points, as_triangles
 from .background import Background
 from .errors import MetricError
+from .text import text_of
 
 __all__ = ["read"]
 
@@ -133,8 +134,8 @@ class _Words:
 
     def __init__(self, path: Path) -> None:
         try:
-            text = path.read_text()
-        except (OSError, UnicodeDecodeError) as error:
+            text = text_of(path.read_bytes())
+        except (OSError, ValueError) as error:
             raise MetricError(f"{path} cannot be read: {error}") from error
         lines = (line.split("#", 1)[0] for line in text.splitlines())
         self.words = " ".join(lines).split()

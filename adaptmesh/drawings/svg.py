@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ..curves import Bezier, Curve, Line
 from ..curves.checks import checked_point
 from ..errors import DomainError, FormatError
-from ..io.files import read_bytes
+from ..io.files import read_bytes, readable_xml
 from ..io.located import located, refusing
 from .drawing import Drawing, affine_arc
 from .svg_syntax import check_syntax
@@ -36,7 +36,7 @@ def read_svg(path: Path) -> Drawing:
     svg = _import_svgelements()
     drawing = Drawing(path)
     with refusing(f"{path} is damaged, or no SVG"), located(path):
-        for shape in _shapes(svg, read_bytes(path)):
+        for shape in _shapes(svg, readable_xml(read_bytes(path))):
             name = _name_of(shape)
             with located(f"shape {name or type(shape).__name__!r}", DomainError):
                 place = _Placement(shape.transform)

@@ -24,7 +24,7 @@ from ..curves import Arc, Bezier, BSpline, Curve, EllipticArc, Line
 from ..domain import Domain
 from ..drawings.drawing import JOINED
 from ..errors import DomainError, FormatError
-from ..io.files import read_bytes
+from ..io.files import read_text
 from ..runs import places_of
 from .script import CURVES, Definition, Script, script_of
 
@@ -58,10 +58,7 @@ def read_geo(path: str | os.PathLike[str]) -> Domain:
         If the script is read but its domain cannot be meshed.
     """
     path = Path(path)
-    try:
-        text = read_bytes(path).decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise FormatError(f"{path} is not a text file: {error}") from None
+    text = read_text(path)
     try:
         return _Model.of(script_of(text)).domain()
     except FormatError as error:

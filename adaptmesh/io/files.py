@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import contextlib
 import os
 import secrets
@@ -9,7 +10,10 @@ import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
+from metrics import text
+
 from ..errors import FormatError
+from .located import located
 
 
 def read_bytes(path: Path) -> bytes:
@@ -23,11 +27,37 @@ def read_bytes(path: Path) -> bytes:
 
 
 def read_text(path: Path) -> str:
-    """Everything that a text file holds; UTF-8, with or without a mark in front."""
+    """Everything that a text file holds, in any encoding that `metrics.text` knows."""
+    data = read_bytes(path)
+    with located(path):
+        return text_of(data)
+
+
+def text_of(data: bytes) -> str:
+    """The text that bytes hold, see `metrics.text`; a `FormatError` if they are no text."""
     try:
-        return read_bytes(path).decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise FormatError(f"{path}: is not a text file: {error}") from None
+        return text.text_of(data)
+    except ValueError as error:
+        raise FormatError(str(error)) from None
+
+
+def without_mark(data: bytes) -> bytes:
+    """The bytes of a file, text or binary; of a text with a byte-order mark as plain UTF-8."""
+    try:
+        return text.without_mark(data)
+    except ValueError as error:
+        raise FormatError(str(error)) from None
+
+
+def readable_xml(data: bytes) -> bytes:
+    """XML that names no encoding and is not the UTF-8 it should be, as UTF-8; else as it is."""
+    head = data[: data.find(b"?>")] if data.lstrip().startswith(b"<?xml") else b""
+    try:
+        data.decode()
+    except UnicodeDecodeError:
+        named = b"encoding" in head or data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+        return data if named else text_of(data).encode()
+    return data
 
 
 def replace_files(contents: Mapping[Path, bytes]) -> None:

@@ -35,6 +35,7 @@ import numpy as np
 
 from ..errors import FormatError
 from .content import Array, Content, refuse_cells
+from .files import text_of, without_mark
 from .located import located
 from .records import BinaryCursor, TextCursor, table
 from .spatial import plane_fields, spatial, spatial_tensor, take_metric
@@ -98,7 +99,7 @@ def decode(data: bytes) -> Content:
     """What a `.msh` file says, of version 2.2 or 4.1, text or binary."""
     from . import gmsh22, gmsh41
 
-    sections = list(_sections(data))
+    sections = list(_sections(without_mark(data)))
     if not sections or sections[0][0] != "MeshFormat":
         raise FormatError("does not start with $MeshFormat: it is damaged or not a Gmsh file")
     version, order = _version(sections[0][1])
@@ -161,7 +162,7 @@ def _version(body: bytes) -> tuple[str, str | None]:
 
 
 def _read_names(body: bytes, out: Sections) -> None:
-    lines = [line for line in _text(body).splitlines() if line.strip()]
+    lines = [line for line in text_of(body).splitlines() if line.strip()]
     rows = [re.match(r'\s*(\d+)\s+(-?\d+)\s+"(.*)"\s*$', line) for line in lines[1:]]
     if not lines or lines[0].strip() != str(len(rows)):
         raise FormatError(f"its first line is not the number of names that follow, {len(rows)}")
@@ -173,7 +174,7 @@ def _read_names(body: bytes, out: Sections) -> None:
 
 def _read_ours(body: bytes, out: Sections) -> None:
     try:
-        ours = json.loads(_text(body))
+        ours = json.loads(text_of(body))
     except ValueError as error:
         raise FormatError(f"is not JSON: {error}") from None
     names = [ours.get("edges", {}), ours.get("regions", {})] if isinstance(ours, dict) else [None]
@@ -184,13 +185,6 @@ def _read_ours(body: bytes, out: Sections) -> None:
 
 
 _TEXT_READERS = {"PhysicalNames": _read_names, "Adaptmesh": _read_ours}
-
-
-def _text(body: bytes) -> str:
-    try:
-        return body.decode()
-    except UnicodeDecodeError:
-        raise FormatError("the names are not UTF-8 text") from None
 
 
 def _read_view(body: bytes, order: str | None, views: dict[str, tuple[Array, Array]]) -> None:
@@ -218,7 +212,7 @@ def _read_view(body: bytes, order: str | None, views: dict[str, tuple[Array, Arr
     tags_of_rows, values = cursor.rows(count, ("i4", 1), ("f8", columns))
     if cursor.left_over():
         raise FormatError("holds more than its counts say: the file is damaged")
-    views[_text(strings[0]).strip().strip('"')] = tags_of_rows[:, 0], values
+    views[text_of(strings[0]).strip().strip('"')] = tags_of_rows[:, 0], values
 
 
 def _integer(word: bytes) -> int:

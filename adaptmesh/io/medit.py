@@ -26,6 +26,7 @@ import numpy as np
 
 from ..errors import FormatError
 from .content import Content, refuse_cells
+from .files import text_of
 from .located import located
 from .medit_keywords import (
     NUMBERS,
@@ -47,7 +48,7 @@ _OTHER_CELLS = {
 }  # fmt: skip
 _REQUIRED = ("RequiredVertices", "RequiredEdges", "Corners")
 _NAME_BYTES = 256
-_COMMENT = re.compile(rb'#[ \t]*adaptmesh (edge|region) (-?\d{1,10}) (".*")[ \t\r]*$', re.MULTILINE)
+_COMMENT = re.compile(r'#[ \t]*adaptmesh (edge|region) (-?[0-9]{1,10}) (".*")[ \t]*$', re.MULTILINE)
 
 
 # ---------------------------------------------------------------------------------------- reading
@@ -56,7 +57,7 @@ _COMMENT = re.compile(rb'#[ \t]*adaptmesh (edge|region) (-?\d{1,10}) (".*")[ \t\
 def decode(data: bytes, *, binary: bool) -> Content:
     """What a `.mesh` or `.meshb` file says; its fields are in other files."""
     file = opened(data, binary=binary)
-    names = {"edge": {}, "region": {}} if binary else _commented_names(data)
+    names = {"edge": {}, "region": {}} if binary else _commented_names(text_of(data))
     dim, vertices, cells = 0, None, {}
     required = dict.fromkeys(_REQUIRED, np.empty(0, np.int64))
     while (keyword := file.next_keyword()) != "End":
@@ -95,14 +96,14 @@ def decode(data: bytes, *, binary: bool) -> Content:
     )
 
 
-def _commented_names(data: bytes) -> dict[str, dict[str, int]]:
+def _commented_names(text: str) -> dict[str, dict[str, int]]:
     names: dict[str, dict[str, int]] = {"edge": {}, "region": {}}
-    for kind, tag, quoted in _COMMENT.findall(data):
-        names[kind.decode()][_unquoted(quoted)] = int(tag)
+    for kind, tag, quoted in _COMMENT.findall(text):
+        names[kind][_unquoted(quoted)] = int(tag)
     return names
 
 
-def _unquoted(quoted: bytes) -> str:
+def _unquoted(quoted: str) -> str:
     try:
         return str(json.loads(quoted))
     except ValueError:
@@ -114,10 +115,7 @@ def _take_names(names: dict[str, dict[str, int]], file: MeditFile) -> None:
     rows = file.cursor.rows(count(file), (file.integer, 2), ("u1", _NAME_BYTES))
     for (keyword, tag), codes in zip(rows[0].tolist(), rows[1], strict=True):
         code = bytes(codes.astype(np.uint8)).partition(b"\0")[0]
-        try:
-            name = code.decode()
-        except UnicodeDecodeError:
-            raise FormatError(f"the name {code!r} is not UTF-8 text") from None
+        name = text_of(code)
         if keyword in kinds:
             names[kinds[keyword]][name] = tag
 

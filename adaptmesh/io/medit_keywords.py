@@ -12,6 +12,7 @@ import re
 from typing import Protocol
 
 from ..errors import FormatError
+from .files import text_of
 from .records import BinaryCursor, Cursor, TextCursor, one, table
 
 NUMBERS = {
@@ -71,7 +72,8 @@ class TextFile:
     real, integer = "f8", "i8"
 
     def __init__(self, data: bytes) -> None:
-        self.cursor = TextCursor(re.sub(rb"\"[^\"\n]*\"|#[^\n]*", b"", data))
+        text = re.sub(r"\"[^\"\n]*\"|#[^\n]*", "", text_of(data))
+        self.cursor = TextCursor(text.encode())
         if self.cursor.word() != b"MeshVersionFormatted":
             raise FormatError("does not start with MeshVersionFormatted: it is no Medit file")
         one(self.cursor)

@@ -28,6 +28,7 @@ import numpy as np
 
 from ..errors import FormatError
 from .content import Array, Content
+from .files import text_of
 from .located import located
 from .vtk_grid import Grid, content_of, grid_of, is_ours, take_names
 from .vtk_legacy import LegacyFile
@@ -233,5 +234,5 @@ class _Reader:
             raise FormatError("is not known, or no keyword: a count may be wrong")
 
     def _keep(self, name: str, values: Array) -> None:
-        full = unquote_to_bytes(name).decode("utf-8", "replace")
+        full = text_of(unquote_to_bytes(name))
         self._arrays[self._place][full] = values

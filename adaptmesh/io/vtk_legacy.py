@@ -8,6 +8,7 @@ import numpy as np
 
 from ..errors import FormatError
 from .content import Array
+from .files import text_of, without_mark
 from .records import BinaryCursor, TextCursor
 
 KINDS = {
@@ -31,6 +32,7 @@ class LegacyFile:
     """A walk over a file, from its first section on."""
 
     def __init__(self, data: bytes) -> None:
+        data = without_mark(data)
         header = _HEADER.match(data)
         if header is None:
             raise FormatError("has not the header of a legacy VTK file")
@@ -46,7 +48,7 @@ class LegacyFile:
             return None
         stop = self._data.find(b"\n", start)
         self._at = len(self._data) if stop < 0 else stop + 1
-        return self._data[start : self._at].decode("utf-8", "replace").split()
+        return text_of(self._data[start : self._at]).split()
 
     def has_next(self, keyword: str) -> bool:
         """Whether the next line starts with that word."""

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..errors import FormatError
 from .content import Array, Content, check_vertices
+from .files import readable_xml
 from .vtk_grid import Grid, content_of, grid_of, is_ours, take_names
 from .vtu_arrays import TYPES, VtuArrays
 
@@ -120,7 +121,7 @@ def _opened(data: bytes) -> tuple[Element, VtuArrays]:
         encoding = "raw" if b"raw" in opening.group() else "base64"
         data = data[: opening.end()] + data[stop:]
     try:
-        root = ElementTree.fromstring(data)
+        root = ElementTree.fromstring(readable_xml(data))
     except (ElementTree.ParseError, ValueError, LookupError) as error:
         raise FormatError(f"is cut short or not XML: {error}") from None
     if root.tag != "VTKFile" or root.get("type") != "UnstructuredGrid":

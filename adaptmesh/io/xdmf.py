@@ -26,6 +26,7 @@ import numpy as np
 
 from ..errors import FormatError
 from .content import Array, Content, check_vertices, refuse_cells
+from .files import readable_xml
 from .xdmf_arrays import XdmfArrays, import_h5py
 
 if TYPE_CHECKING:
@@ -170,7 +171,7 @@ def _domain(data: bytes) -> Element:
     from xml.etree import ElementTree
 
     try:
-        root = ElementTree.fromstring(data)
+        root = ElementTree.fromstring(readable_xml(data))
     except (ElementTree.ParseError, ValueError, LookupError) as error:
         raise FormatError(f"is cut short or not XML: {error}") from None
     domain = root.find("Domain")

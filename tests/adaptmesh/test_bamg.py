@@ -135,7 +135,7 @@ def test_subdomains_beside_curved_edges(g):
     ("content", "message"),
     [
         ("", "no BAMG geometry"),
-        (b"\xff\xfe\0", "no BAMG geometry"),
+        (b"\xff\xfe\0", "is not a text file"),
         ("MeshVersionFormatted 0\nDimension 2\n", "no Edges"),
         (CURVED["smooth"].replace("Dimension 2", "Dimension 3"), "Dimension: .*dimension 2"),
         (CURVED["smooth"].replace("Vertices 8", "Vertices 9"), "Vertices: .*found b'Edges'"),
