@@ -17,7 +17,7 @@ from typing import Any
 
 from .errors import DomainError, FormatError
 from .io.files import read_bytes, text_of
-from .io.located import refusing
+from .io.located import located, refusing
 from .raw import Shape
 
 _LANGUAGES = {
@@ -34,7 +34,8 @@ def read_shapefile(path: Path) -> list[Shape]:
     """The polygons of a shapefile, unchecked; a `FormatError` names the file."""
     pyshp = _import_pyshp()
     files = _contents(path)
-    encoding = _encoding(files.pop("cpg", None), files.get("dbf"))
+    with located(path.with_suffix(".cpg")):
+        encoding = _encoding(files.pop("cpg", None), files.get("dbf"))
     with (
         refusing(
             f"{path} is damaged, or no shapefile", pyshp.ShapefileException, pyshp.GeoJSON_Error
@@ -47,7 +48,8 @@ def read_shapefile(path: Path) -> list[Shape]:
             else (shape.__geo_interface__, getattr(shape, "z", ()))
             for shape in reader.iterShapes()
         ]
-        names = _names(reader, encoding) if "dbf" in files else []
+        with located(path.with_suffix(".dbf")):
+            names = _names(reader, encoding) if "dbf" in files else []
     if not read:
         raise DomainError("it has no shapes: there is nothing to mesh")
     if names and len(names) != len(read):
@@ -80,7 +82,7 @@ def _name(value: object, encoding: str | None) -> str:
         return str(value)
     data = value.encode("latin-1")
     if encoding is not None:
-        with contextlib.suppress(UnicodeDecodeError):
+        with contextlib.suppress(UnicodeError, LookupError):
             return data.decode(encoding)
     return text_of(data)
 
