@@ -139,12 +139,16 @@ class History(Value, Sequence[Iteration]):
         Whether it has ended because nothing changed any more.
     options : mapping of str to str
         What the loop was asked for, as text.
+    options_since : int
+        The first iteration that was made for these options, or whose mesh the loop started from
+        when they changed; those before it belong to a call that was resumed with other options.
     """
 
     iterations: tuple[Iteration, ...] = ()
     reason: str = ""
     converged: bool = False
     options: Mapping[str, str] = field(default_factory=dict)
+    options_since: int = 0
 
     @overload
     def __getitem__(self, index: int) -> Iteration: ...
@@ -270,6 +274,11 @@ class History(Value, Sequence[Iteration]):
         from .history_view import as_html
 
         return as_html(self)
+
+    @property
+    def for_options(self) -> tuple[Iteration, ...]:
+        """The iterations made for `options`, from `options_since` on."""
+        return self.iterations[self.options_since :]
 
     def _last(self) -> Iteration:
         if not self.iterations:

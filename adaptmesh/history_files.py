@@ -65,6 +65,7 @@ def write_list(history: History, folder: Path) -> None:
     content = {
         "version": VERSION,
         "options": dict(history.options),
+        "options_since": history.options_since,
         "reason": history.reason,
         "converged": history.converged,
         "iterations": [_numbers(iteration) for iteration in history],
@@ -99,7 +100,11 @@ def load(folder: Path, domain: Domain | None) -> History:
             raise FormatError(f"{path}: version {content['version']}; this reads {VERSION}")
         iterations = tuple(_iteration(n, folder, domain) for n in content["iterations"])
         history = History(
-            iterations, content["reason"], bool(content["converged"]), content["options"]
+            iterations,
+            content["reason"],
+            bool(content["converged"]),
+            content["options"],
+            int(content.get("options_since", 0)),
         )
     for k, iteration in enumerate(history):
         file = _path(folder, iteration)

@@ -101,8 +101,9 @@ def adapt_loop(
         No mesh has more than so many times the vertices of the one before, or so many times less:
         where features are is found on small meshes.
     order : float, optional
-        The power of the number of vertices with which the error falls; for `error` only. 1 for the
-        interpolation error in L^p; other estimates that `solve` gives may have another.
+        The power of the number of vertices with which the error falls, for `error` only, until
+        meshes of different sizes tell. 1 for the interpolation error in L^p; other estimates that
+        `solve` gives may have another.
     tolerance : float, optional
         The loop has converged when three meshes in a row have numbers of vertices, and estimates of
         each error, that differ by no more than this share.
@@ -117,7 +118,9 @@ def adapt_loop(
     resume : History or path, optional
         What an earlier call left, or the folder where it was saved. The loop goes on after its last
         iteration, and gives what it would have given without interruption, bit for bit, if it is
-        called with the same arguments.
+        called with the same arguments. With another target, norm, choice of fields or limits it
+        goes on from the last mesh: what was found for the earlier ones does not count as
+        convergence, nor as iterations.
     keep_last : int, optional
         Keep only so many of the last meshes in memory, and read the others from `save` if they are
         asked for.
@@ -257,7 +260,7 @@ class Work:
         with clock.of("solve"):
             solved = as_solved(self.solve(mesh, previous), mesh)
         with clock.of("metric"):
-            metric, errors = self.steering.metric(mesh, solved)
+            metric, errors = self.steering.metric(mesh, solved, history.for_options)
         return Iteration(
             number=len(history),
             n_points=len(mesh.points),
@@ -299,6 +302,8 @@ class Keeping:
         if not same:
             files.refuse_history(self.folder)
             files.save(history, self.folder)
+        elif history and isinstance(history[-1].kept, Snapshot):  # estimated again
+            files.append(history, self.folder)
         return history
 
     def kept(self, history: History, clock: Clock) -> History:
@@ -355,7 +360,28 @@ def _resumed(
     earlier = resume if isinstance(resume, History) else History.load(resume, mesh.domain)
     if earlier:
         refuse_other_mesh(earlier[0].mesh, mesh)
-    return replace(earlier, reason="", converged=False, options=options)
+    going_on = replace(earlier, reason="", converged=False, options=options)
+    if earlier and any(
+        earlier.options.get(name) != options.get(name) for name in steering.asked_for
+    ):
+        return _with_last_estimated_again(going_on, steering)
+    return going_on
+
+
+def _with_last_estimated_again(history: History, steering: Steering) -> History:
+    """The history with the metric and the errors of its last mesh by other options.
+
+    Nothing of what was found for the earlier options counts as convergence.
+    """
+    last = history[-1]
+    snapshot = last.snapshot
+    metric, errors = steering.metric(snapshot.mesh, snapshot.solved)
+    again = replace(last, errors=FrozenMapping(errors), kept=replace(snapshot, metric=metric))
+    return replace(
+        history,
+        iterations=(*history.iterations[:-1], again),
+        options_since=len(history) - 1,
+    )
 
 
 def refuse_other_mesh(first: Mesh, mesh: Mesh) -> None:

@@ -14,8 +14,10 @@ from metrics.normalise import check_combination, check_norm
 from metrics.recovery import check_method
 from metrics.solution import optimal_tensors
 
+from .error_control import next_count
 from .errors import MetricError
 from .expected import expect_number
+from .history import Iteration
 from .mesh import Mesh
 from .solved import Array, Solved, space_of
 
@@ -62,6 +64,11 @@ class Steering:
     order: float = 1.0
     max_vertices: int = 5_000_000
 
+    @property
+    def asked_for(self) -> list[str]:
+        """The options that decide what the mesh is to be; the others only how it is reached."""
+        return [name for name in vars(self) if name not in ("growth", "order", "max_vertices")]
+
     def __post_init__(self) -> None:
         for name in ("p", "growth", "order"):
             expect_number(name, getattr(self, name))
@@ -85,11 +92,16 @@ class Steering:
         if not self.order > 0:
             raise ValueError(f"order={self.order!r}: must be positive")
 
-    def metric(self, mesh: Mesh, solved: Solved) -> tuple[Floats, dict[str, float]]:
-        """The metric (n, 3) at the vertices for the next mesh, and the errors on this one."""
+    def metric(
+        self, mesh: Mesh, solved: Solved, earlier: Sequence[Iteration] = ()
+    ) -> tuple[Floats, dict[str, float]]:
+        """The metric (n, 3) at the vertices for the next mesh, and the errors on this one.
+
+        `earlier` are the iterations before, made for the same options.
+        """
         if solved.metric is None:
-            return self._recovered(mesh, solved)
-        count = self._count(mesh, solved.errors)
+            return self._recovered(mesh, solved, earlier)
+        count = self._count(mesh, solved.errors, earlier)
         errors = dict(solved.errors) or self._watched(mesh, solved)
         metric = solved.metric
         if count is None:
@@ -110,24 +122,33 @@ class Steering:
             )
         return max(value / self._wanted(name) for name, value in errors.items())
 
-    def _recovered(self, mesh: Mesh, solved: Solved) -> tuple[Floats, dict[str, float]]:
+    def _recovered(
+        self, mesh: Mesh, solved: Solved, earlier: Sequence[Iteration]
+    ) -> tuple[Floats, dict[str, float]]:
         points, triangles = mesh.points, mesh.triangles
-        curvatures = self._curvatures(mesh, self._bent_fields(mesh, solved))
+        curvatures = self._curvatures(mesh, self._varying_fields(mesh, solved))
         errors = dict(solved.errors) or self._estimates(curvatures)
+        bent = {name: c for name, c in curvatures.items() if not c.is_flat}
         shares = None
         if self.error is not None and not solved.errors:
-            shares = [self._wanted(name) for name in curvatures]
+            shares = [self._wanted(name) for name in bent]
         self._refuse_unknown(errors, solved)
-        count = self._count(mesh, errors)
+        count = self._count(mesh, errors, earlier)
         if count is None:
             raise MetricError(
                 "neither target_vertices nor error is given, and solve returned no metric: "
                 "there is nothing that says how fine the mesh is to be"
             )
+        if not bent:
+            uniform = np.tile([1.0, 0.0, 1.0], (len(points), 1))
+            metric = normalised(
+                uniform, points, triangles, target_vertices=count, limits=self.limits
+            )
+            return metric, errors
         metric = optimal_tensors(
             points,
             triangles,
-            [c.absolute for c in curvatures.values()],
+            [c.absolute for c in bent.values()],
             target_vertices=count,
             error=shares,
             p=self.p,
@@ -158,22 +179,24 @@ class Steering:
         }
 
     def _estimates(self, curvatures: Mapping[str, Curvature]) -> dict[str, float]:
+        """The interpolation error of each field; 0 of one that is linear to rounding."""
         return {
-            name: norm(c.interpolation_errors(self.p), self.p) for name, c in curvatures.items()
+            name: 0.0 if c.is_flat else norm(c.interpolation_errors(self.p), self.p)
+            for name, c in curvatures.items()
         }
 
-    def _bent_fields(self, mesh: Mesh, solved: Solved) -> dict[str, Array]:
+    def _varying_fields(self, mesh: Mesh, solved: Solved) -> dict[str, Array]:
         """The fields that steer and are not the same everywhere, (n, k)."""
         chosen = steering_fields(self.fields, solved.fields, mesh)
-        bent = {n: v.reshape(len(v), -1) for n, v in chosen.items() if not is_constant(v)}
-        for name, values in bent.items():
+        varying = {n: v.reshape(len(v), -1) for n, v in chosen.items() if not is_constant(v)}
+        for name, values in varying.items():
             refuse_beyond_range(name, values)
-        if not bent:
+        if not varying:
             raise MetricError(
                 f"no field asks for any size: {', '.join(map(repr, chosen))} "
                 f"{'are' if len(chosen) > 1 else 'is'} the same everywhere"
             )
-        return bent
+        return varying
 
     def _refuse_unknown(self, errors: Mapping[str, float], solved: Solved) -> None:
         known = dict.fromkeys([*solved.fields, *errors])
@@ -184,7 +207,9 @@ class Steering:
                     f"{', '.join(map(repr, known))}"
                 )
 
-    def _count(self, mesh: Mesh, errors: Mapping[str, float]) -> float | None:
+    def _count(
+        self, mesh: Mesh, errors: Mapping[str, float], earlier: Sequence[Iteration]
+    ) -> float | None:
         """How many vertices the next mesh is to have; None if only a metric can say.
 
         What is on the way to the number wanted, or comes of an error that even the coarsest mesh
@@ -192,7 +217,9 @@ class Steering:
         """
         n_points = len(mesh.points)
         if self.error is not None:
-            wanted = n_points * float(self.excess(errors) ** (1 / self.order))
+            counts = [*(it.n_points for it in earlier), n_points]
+            excesses = [*(self.excess(it.errors) for it in earlier), self.excess(errors)]
+            wanted = next_count(counts, excesses, self.order)
             wanted = min(wanted, SHARE_OF_BUDGET * self.max_vertices)
         elif self.target_vertices is not None:
             wanted = self.target_vertices

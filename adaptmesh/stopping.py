@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from .expected import expect_number, expect_whole
-from .history import History
+from .history import History, Iteration
 from .steering import Steering
 
 AGREE = 3  # so many iterations in a row that agree are the end
+UNIFORM = 0.05  # how near to the vertices asked for a mesh of one size is taken as it is
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,12 @@ class StoppingRule:
         """The history with its end, or None if there is to be another iteration."""
         if not history:
             return None
-        if self.agree(history):
+        if self._nothing_to_reduce(history, steering):
+            return history.ended(
+                "the fields are linear, to rounding: there is no interpolation error to reduce",
+                True,
+            )
+        if self.agree(history.for_options):
             short = steering.error is not None and (
                 steering.excess(history[-1].errors) > 1 + self.tolerance
             )
@@ -78,15 +84,29 @@ class StoppingRule:
                 return history.ended(
                     f"the budget of {self.budget.vertices:,} vertices is used up", False
                 )
-        if len(history) > self.max_iterations:
-            return history.ended(f"the mesh was adapted {len(history) - 1} times", False)
+        adapted = len(history.for_options) - 1
+        if adapted >= self.max_iterations:
+            return history.ended(f"the mesh was adapted {adapted} times", False)
         if elapsed >= self.budget.seconds:
             return history.ended(f"the budget of {self.budget.seconds:g} s is used up", False)
         return None
 
-    def agree(self, history: History) -> bool:
+    def _nothing_to_reduce(self, history: History, steering: Steering) -> bool:
+        """Whether linear fields steer, and the mesh has the vertices asked for."""
+        last = history[-1]
+        if not last.errors or any(last.errors.values()):
+            return False
+        if last.snapshot.solved.metric is not None:
+            return False
+        target = steering.target_vertices
+        return target is None or (
+            len(history.for_options) > 1
+            and abs(last.n_points - target) <= max(self.tolerance, UNIFORM) * target
+        )
+
+    def agree(self, iterations: Sequence[Iteration]) -> bool:
         """Whether counts and errors of the last meshes are all but the same."""
-        last = history[-AGREE:]
+        last = iterations[-AGREE:]
         if len(last) < AGREE or any(it.errors.keys() != last[0].errors.keys() for it in last):
             return False
         rows = [[float(it.n_points) for it in last]]

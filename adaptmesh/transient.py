@@ -17,7 +17,7 @@ comes.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -114,7 +114,8 @@ def transient_loop(
     resume : TransientHistory or path, optional
         What an earlier call left, or the folder where it was saved. The loop goes on at the start
         of the interval that was not completed, and gives what it would have given without
-        interruption, bit for bit, if it is called with the same arguments.
+        interruption, bit for bit, if it is called with the same arguments. Other options for the
+        meshes are refused.
 
     Returns
     -------
@@ -157,7 +158,7 @@ def transient_loop(
     steering = SteeringInTime(target_vertices, p, fields, limits, recovery, combine, in_time)
     check_reachable(target_vertices, mesh, limits.h_max)
     solver = _Solver(initial, advance, transfer, keep_bounds)
-    history = _resumed(resume, mesh, ends)
+    history = _resumed(resume, mesh, ends, steering)
     folder = _begun(save, history, resume)
     fitted: list[Background] = []
     for place in range(sum(map(len, history.sweeps)), int(sweeps) * n):
@@ -306,11 +307,15 @@ def _checked_times(times: ArrayLike) -> Floats:
 
 
 def _resumed(
-    resume: TransientHistory | PathLike | None, mesh: Mesh, ends: Floats
+    resume: TransientHistory | PathLike | None,
+    mesh: Mesh,
+    ends: Floats,
+    steering: SteeringInTime,
 ) -> TransientHistory:
-    """The history to go on with: empty, or an earlier one of this mesh and these times."""
+    """The history to go on with: empty, or an earlier one of this mesh, times and options."""
+    options = {name: str(value) for name, value in vars(steering).items() if value is not None}
     if resume is None:
-        return TransientHistory()
+        return TransientHistory(options=options)
     if isinstance(resume, TransientHistory):
         history = resume
     else:
@@ -325,7 +330,19 @@ def _resumed(
             )
     if history.sweeps:
         refuse_other_mesh(history.sweeps[0][0].mesh, mesh)
-    return history
+        _refuse_other_options(history.options, options)
+    return history if history.options == options else replace(history, options=options)
+
+
+def _refuse_other_options(earlier: Mapping[str, str], now: Mapping[str, str]) -> None:
+    """Refuse to go on with meshes that were made for something else."""
+    for name in sorted({*earlier, *now} if earlier else ()):
+        had, wanted = earlier.get(name), now.get(name)
+        if had != wanted:
+            raise ValueError(
+                f"the history to resume was made with {name}={had}, not {wanted}: give the same "
+                "options; or begin without `resume`, on the first mesh of its last sweep"
+            )
 
 
 def _begun(

@@ -58,17 +58,21 @@ def load(folder: Path, domain: Domain | None) -> TransientHistory:
         if content["version"] != VERSION:
             raise FormatError(f"{path}: version {content['version']}; this reads {VERSION}")
         counts = [int(n) for n in content["intervals"]]
+        options = {str(k): str(v) for k, v in content.get("options", {}).items()}
     names = [[_name(k, number) for number in range(n)] for k, n in enumerate(counts)]
     for name in itertools.chain(*names):
         if not (folder / name).exists():
             raise FormatError(f"{path}: {name} is missing")
-    return TransientHistory(
-        tuple(tuple(_interval(folder / name, domain) for name in sweep) for sweep in names)
-    )
+    sweeps = tuple(tuple(_interval(folder / name, domain) for name in sweep) for sweep in names)
+    return TransientHistory(sweeps, options)
 
 
 def _write_list(history: TransientHistory, folder: Path) -> None:
-    content = {"version": VERSION, "intervals": [len(sweep) for sweep in history.sweeps]}
+    content = {
+        "version": VERSION,
+        "options": dict(history.options),
+        "intervals": [len(sweep) for sweep in history.sweeps],
+    }
     replace_files({folder / LIST: json.dumps(content, indent=1).encode()})
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -60,9 +60,12 @@ class TransientHistory(Value):
     ----------
     sweeps : tuple of tuple of Interval
         The last is the best; it has fewer intervals than the others if the loop was interrupted.
+    options : mapping of str to str
+        What the meshes were made for, as text.
     """
 
     sweeps: tuple[tuple[Interval, ...], ...] = ()
+    options: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def intervals(self) -> tuple[Interval, ...]:
@@ -72,7 +75,7 @@ class TransientHistory(Value):
     def with_interval(self, interval: Interval, sweep: int) -> TransientHistory:
         """The same with one interval more in a sweep, the last or the next."""
         before, now = self.sweeps[:sweep], self.sweeps[sweep:]
-        return TransientHistory((*before, (*sum(now, ()), interval)))
+        return replace(self, sweeps=(*before, (*sum(now, ()), interval)))
 
     def mean_vertices(self, sweep: int = -1) -> float:
         """The number of vertices, averaged over time."""

@@ -90,6 +90,11 @@ class Curvature:
         floor = np.maximum(noise, _FLATNESS * largest)
         return combined([absolute(h, floor) for h in self.hessians])
 
+    @cached_property
+    def is_flat(self) -> bool:
+        """Whether rounding of the values can make all that tells the field from a linear one."""
+        return bool(self.interpolation_errors(np.inf).max() <= _ROUNDING * self.largest)
+
     def interpolation_errors(self, p: float = 2) -> Floats:
         """The L^p norm on each triangle, (m,), of the error of linear interpolation on this mesh.
 
