@@ -16,11 +16,18 @@ from .chains import vertices_at
 from .domain import Domain
 from .frozen import frozen_domain
 from .generate import generate
-from .local import Editing, edited
+from .local import Edited, Editing, edited
 from .mesh import Mesh
 from .outline import check_is_mesh
 from .placement import Samples
 from .prediction import predict
+from .stretches import is_off
+
+TOLERANCE = 0.02
+"""The share of unit edges of an edited mesh is smaller than that of a new one by no more than this.
+
+A new mesh is made to compare if a larger share of the edges are not unit, constrained ones aside:
+the domain can force these to be short."""
 
 
 def adapt(
@@ -51,8 +58,9 @@ def adapt(
         as it is: for time steps, where the metric changes little or in few places. `Mesh.kept` of
         the new mesh says which vertices were kept. New vertices of the boundary lie on
         the curves of the domain, and periodic boundaries stay alike. The domain is meshed again all
-        the same if most of the vertices would have to go, or if the constrained edges of the mesh
-        are not along the lines of the domain.
+        the same if most of the vertices would have to go, if the constrained edges of the mesh
+        are not along the lines of the domain, or if more than 2 % of the edges within the domain
+        are not unit in the end, and a new mesh has more unit edges by 2 %.
     frozen : sequence of str, optional
         Names of boundaries and lines whose edges stay as the mesh has them, to fit a neighbour;
         those that are periodic with them stay, too.
@@ -67,21 +75,39 @@ def adapt(
     domain = mesh.domain or Domain.of_mesh(mesh)
     field = control_space_on(mesh, metric)
     meshed = frozen_domain(domain, mesh, frozen) if frozen else domain
-    new = _edited(mesh, meshed, field, max_vertices, progress) if keep else None
-    if new is None:
-        new = generate(
+
+    def again() -> Mesh:
+        return generate(
             meshed, field, placement=placement, max_vertices=max_vertices, progress=progress
         )
+
+    edit = _edited(mesh, meshed, field, max_vertices, progress) if keep else None
+    if edit is None:
+        new = again()
+    elif edit.share <= TOLERANCE:
+        new = edit.mesh
+    else:
+        new = _more_unit(edit.mesh, again(), field)
     return replace(new, domain=domain, kept=vertices_at(mesh, new.points) if keep else None)
 
 
 def _edited(
     mesh: Mesh, domain: Domain, field: ControlSpace, max_vertices: int, progress: Progress | None
-) -> Mesh | None:
+) -> Edited | None:
     samples = Samples(field)
     budget = Budget(max_vertices, predict(domain, samples))
     budget.check_prediction()
     return edited(mesh, domain, samples, Editing(), budget, progress or (lambda stage, f: None))
+
+
+def _more_unit(edited: Mesh, again: Mesh, field: ControlSpace) -> Mesh:
+    """The edited mesh, unless the new one has a larger share of unit edges, by `TOLERANCE`."""
+
+    def unit(mesh: Mesh) -> float:
+        lengths = metrics.edge_lengths(mesh.points, mesh.unique_edges, field)
+        return 1 - float(is_off(lengths).mean())
+
+    return edited if unit(edited) >= unit(again) - TOLERANCE else again
 
 
 def control_space_on(mesh: Mesh, metric: Any) -> ControlSpace:

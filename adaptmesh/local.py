@@ -4,7 +4,8 @@
 2. Outline: rows of edges along the boundary are cut anew where they are not unit.
 3. Zone: what touches an edge that is not unit, and its neighbours, is removed; all else is held.
 4. Fill: as in `generate`, ahead of a front (which passes what it finds good) and along edges; the
-   new vertices are smoothed.
+   new vertices are smoothed. Edges can be too long where there was no vertex to remove: the mesh is
+   filled there all the same.
 
 Removing what is off and filling the gaps makes a better mesh than collapsing and splitting edges:
 after many steps it still has the count and the quality of a fresh one.
@@ -13,6 +14,7 @@ after many steps it still has the count and the quality of a fresh one.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +30,7 @@ from .errors import DomainError
 from .generate import finished_mesh
 from .lines import Lines
 from .mesh import Mesh
-from .misfits import Fit, around_misfits
+from .misfits import Fit, Misfits, find_misfits
 from .optimisation import Optimisation, Settling, optimise, settle
 from .placement import (
     EdgePlacement,
@@ -66,6 +68,13 @@ class Editing:
     most_removed: float = 0.75
 
 
+class Edited(NamedTuple):
+    """An edited mesh, and the share of its edges that are not unit, constrained ones aside."""
+
+    mesh: Mesh
+    share: float
+
+
 def edited(
     mesh: Mesh,
     domain: Domain,
@@ -73,7 +82,7 @@ def edited(
     options: Editing,
     budget: Budget,
     report: Progress,
-) -> Mesh | None:
+) -> Edited | None:
     """The mesh, edited to fit a metric; None if a new one had better be made."""
     report("loading the mesh", 0.02)
     lines = Lines.of(domain)
@@ -88,9 +97,9 @@ def edited(
             before = chains
             chains = recut(mesher, before, lines, samples, budget.max_vertices)
             outline_fits = chains is before
-        measure_fresh_edges(mesher, samples, uncut_below=np.inf)
-        removable = mesher.hold_all_but(around_misfits(mesher, samples, options.fit))
-        if not removable:
+        misfits = measured_misfits(mesher, samples, options.fit)
+        removable = mesher.hold_all_but(misfits.zone)
+        if not removable and not misfits.has_long_edges:
             break
         if turn == 0 and removable > options.most_removed * np.sum(held == _core.FREE):
             return None
@@ -99,10 +108,17 @@ def edited(
         fill(mesher, samples, budget, within(report, turn / options.turns, 1 / options.turns))
     if had_better_be_anew(mesher, chains, lines, samples, budget.max_vertices):
         return None
+    share = measured_misfits(mesher, samples, options.fit).share
     mesher.set_constrained(chains.edges, lines.segments[chains.edge_lines])
     mesher.compact()
     report("done", 1.0)
-    return finished_mesh(domain, mesher, mesher.labels())
+    return Edited(finished_mesh(domain, mesher, mesher.labels()), share)
+
+
+def measured_misfits(mesher: _core.Mesher, samples: Samples, fit: Fit) -> Misfits:
+    """Measure what has changed, and find what does not fit."""
+    measure_fresh_edges(mesher, samples, uncut_below=np.inf)
+    return find_misfits(mesher, samples, fit)
 
 
 def fill(mesher: _core.Mesher, samples: Samples, budget: Budget, report: Progress) -> None:

@@ -4,13 +4,15 @@
 - All edges are unit, but in one place most are long, or short: the mean length of the edges of a
   vertex, averaged over its neighbours, is off. In a fresh mesh it is within a tenth of 1.
 
-Around constrained edges that the domain makes too short nothing fits, and never will: what is wrong
-there is left alone.
+Around constrained edges that the domain makes too short nothing fits, and never will: bad triangles
+and places that are too fine are left alone there. Not so short edges with a vertex that is on no
+constrained edge: a new mesh has none of them.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,8 +53,26 @@ class Fit:
     spoilt_rings: int = 3
 
 
-def around_misfits(mesher: _core.Mesher, field: ControlSpace, fit: Fit) -> Bools:
-    """Which vertices are in or around a misfit, (n,)."""
+class Misfits(NamedTuple):
+    """What does not fit.
+
+    Attributes
+    ----------
+    zone : (n,) array of bool
+        Which vertices are in or around a misfit: those that are free are to be removed.
+    has_long_edges : bool
+        Whether points are missing, be there a vertex to remove or not.
+    share : float
+        The share of edges that are not unit, those that are constrained aside.
+    """
+
+    zone: Bools
+    has_long_edges: bool
+    share: float
+
+
+def find_misfits(mesher: _core.Mesher, field: ControlSpace, fit: Fit) -> Misfits:
+    """Measure the edges of a mesh, and find where it does not fit."""
     points = mesher.points()
     edges, lengths, is_constrained = mesher.edges()
     n = len(points)
@@ -61,14 +81,18 @@ def around_misfits(mesher: _core.Mesher, field: ControlSpace, fit: Fit) -> Bools
         doubtful |= np.abs(lengths / bound - 1) < DOUBT
     lengths[doubtful] = metrics.edge_lengths(points, edges[doubtful], field)
 
-    spoilt = _marked(edges[is_constrained & (lengths < UNIT[0])], n)
-    misfit = _marked(edges[(lengths < UNIT[0]) | (lengths > UNIT[1])], n)
+    is_short, is_long = lengths < UNIT[0], lengths > UNIT[1]
+    is_free = ~_marked(edges[is_constrained], n)
+    spoilt = _marked(edges[is_constrained & is_short], n)
+    misfit = _marked(edges[is_short | is_long], n)
     misfit[mesher.corners_below(fit.least_quality)] = True
     mean = np.exp(_mean_around(_mean_of_edges(np.log(lengths), edges, n), edges))
     misfit |= mean > fit.mean_length
     misfit &= ~_grown(spoilt, edges, 1)
     misfit |= (mean < 1 / fit.mean_length) & ~_grown(spoilt, edges, fit.spoilt_rings)
-    return _grown(misfit, edges, fit.rings)
+    misfit |= _marked(edges[is_short & is_free[edges].any(axis=1)], n)
+    share = float(np.mean((is_short | is_long) & ~is_constrained))
+    return Misfits(_grown(misfit, edges, fit.rings), bool(is_long.any()), share)
 
 
 def _marked(edges: Ints, n: int) -> Bools:
