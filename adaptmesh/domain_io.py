@@ -13,7 +13,7 @@ from .drawings import Drawing, read_dxf, read_svg
 from .errors import DomainError
 from .geo import read_geo
 from .geojson import read_geojson
-from .io.located import located
+from .io.located import located, only_our_errors
 from .polyfile import read_poly
 from .raw import Outline, Shape
 from .shp import read_shapefile
@@ -68,7 +68,7 @@ def read_domain(path: str | os.PathLike[str]) -> Domain:
     repair : takes the path of a file that is not clean.
     """
     raw = read_raw(path)
-    with located(path, DomainError):
+    with only_our_errors(path), located(path, DomainError):
         if isinstance(raw, Domain):
             return raw
         return domain_of_shapes(raw) if isinstance(raw, list) else raw.domain()
@@ -78,7 +78,7 @@ def read_raw(path: str | os.PathLike[str]) -> Domain | Outline | Drawing | list[
     """What is in a file that `read_domain` can read, before it is checked."""
     path = Path(path)
     reader = _READERS.get(path.suffix.lower(), _domain_of_mesh_file)
-    with located(path, DomainError):
+    with only_our_errors(path), located(path, DomainError):
         return reader(path)
 
 

@@ -11,7 +11,9 @@ from typing import Any
 from .convert import to_shapely
 from .domain import Domain
 from .errors import DomainError, FormatError
+from .io.bounded import read_json
 from .io.files import read_text, replace_files
+from .io.located import located
 from .raw import Shape
 
 GEOJSON_SUFFIXES = (".geojson", ".json")
@@ -19,19 +21,12 @@ GEOJSON_SUFFIXES = (".geojson", ".json")
 
 def read_geojson(path: Path) -> list[Shape]:
     """The polygons of a file, unchecked; a `FormatError` names the file."""
-    try:
-        content = json.loads(read_text(path))
-    except json.JSONDecodeError as error:
-        raise FormatError(
-            f"{path} is not valid JSON at line {error.lineno}, column {error.colno} "
-            f"({error.msg}): is the file complete?"
-        ) from error
-    if not isinstance(content, dict) or "type" not in content:
-        raise FormatError(f"{path} is JSON but not GeoJSON: its outermost object has no 'type'")
-    try:
+    text = read_text(path)
+    with located(path):
+        content = read_json(text)
+        if not isinstance(content, dict) or "type" not in content:
+            raise FormatError("is JSON but not GeoJSON: its outermost object has no 'type'")
         return shapes_of_geojson(content)
-    except FormatError as error:
-        raise FormatError(f"{path}: {error}") from error
 
 
 def write_geojson(path: str | os.PathLike[str], domain: Domain) -> None:
@@ -80,6 +75,7 @@ def shapes_of_geojson(content: Mapping[str, Any]) -> list[Shape]:
         name = None
         if feature.get("type") == "Feature":
             geometry = feature.get("geometry")
-            name = (feature.get("properties") or {}).get("name")
+            properties = feature.get("properties")
+            name = properties.get("name") if isinstance(properties, Mapping) else None
         shapes.append(Shape.of_geojson(geometry, number, None if name in (None, "") else str(name)))
     return shapes

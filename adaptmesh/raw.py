@@ -139,7 +139,10 @@ class Shape:
         if not isinstance(coordinates, Sequence) or isinstance(coordinates, str):
             raise FormatError(f"{label} cannot be read: its coordinates are {coordinates!r}")
         parts = [coordinates] if kind == "Polygon" else coordinates
-        read = [[_ring(ring, label) for ring in part] for part in parts]
+        try:
+            read = [[_ring(ring, label) for ring in part] for part in parts]
+        except TypeError as error:  # a number in the place of a list
+            raise FormatError(f"{label} cannot be read: {error}") from None
         shape = cls(label, name, [part for part in read if part], closed=True)
         points = (point for part in parts for ring in part for point in ring)
         try:

@@ -14,7 +14,7 @@ from .domain import Domain
 from .drawings import Drawing
 from .errors import DomainError
 from .geojson import shapes_of_geojson
-from .io.located import located
+from .io.located import located, only_our_errors
 from .raw import Outline, Shape
 from .repair_segments import repaired_domain_of_segments
 
@@ -88,7 +88,7 @@ def repair(dirty: Any, tolerance: float | None = None) -> tuple[Domain, Repairs]
         from .domain_io import read_raw
 
         raw = read_raw(dirty)
-        with located(dirty, DomainError):
+        with only_our_errors(dirty), located(dirty, DomainError):
             return _repaired(raw, tolerance)
     return _repaired(dirty, tolerance)
 

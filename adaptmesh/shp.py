@@ -37,9 +37,7 @@ def read_shapefile(path: Path) -> list[Shape]:
     with located(path.with_suffix(".cpg")):
         encoding = _encoding(files.pop("cpg", None), files.get("dbf"))
     with (
-        refusing(
-            f"{path} is damaged, or no shapefile", pyshp.ShapefileException, pyshp.GeoJSON_Error
-        ),
+        refusing(f"{path} is damaged, or no shapefile"),
         pyshp.Reader(**files, encoding="latin-1") as reader,
     ):
         read = [

@@ -38,7 +38,7 @@ def read_dxf(path: Path) -> Drawing:
     """The curves of the model space of a DXF file, each with the name of its layer."""
     ezdxf = _import_ezdxf()
     drawing = Drawing(path)
-    with refusing(f"{path} is damaged, or no DXF file", ezdxf.DXFError), located(path):
+    with refusing(f"{path} is damaged, or no DXF file"), located(path):
         for entity in _entities(ezdxf, path):
             with located(_words(entity), AdaptmeshError), refusing("is damaged"):
                 for curve in _curves(entity):

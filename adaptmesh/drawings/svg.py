@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from ..curves import Bezier, Curve, Line
 from ..curves.checks import checked_point
 from ..errors import DomainError, FormatError
+from ..io.bounded import read_xml
 from ..io.files import read_bytes, readable_xml
 from ..io.located import located, refusing
 from .drawing import Drawing, affine_arc
@@ -49,12 +50,7 @@ def read_svg(path: Path) -> Drawing:
 
 def _shapes(svg: Any, data: bytes) -> Iterator[Any]:
     """What the file draws; all of it is looked at before the first is handed out."""
-    from xml.etree import ElementTree
-
-    try:
-        check_syntax(ElementTree.fromstring(data))
-    except ElementTree.ParseError as error:
-        raise FormatError(f"it is cut short or not XML: {error}") from None
+    check_syntax(read_xml(data))
     root = svg.SVG.parse(BytesIO(data), reify=False)
     if not isinstance(root, svg.SVG):
         raise FormatError("it is XML, but not SVG")

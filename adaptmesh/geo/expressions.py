@@ -21,6 +21,7 @@ from ..errors import FormatError
 _TOKEN = re.compile(
     r"""
     (?P<skip>\s+ | //[^\n]* | /\*.*?\*/)
+  | (?P<unclosed>/\*)
   | (?P<number>(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?)
   | (?P<string>"[^"\n]*" | '[^'\n]*')
   | (?P<name>[A-Za-z_]\w*(?:\.[A-Za-z]\w*)*)
@@ -29,8 +30,10 @@ _TOKEN = re.compile(
     re.VERBOSE | re.DOTALL,
 )
 
-MOST_ITEMS = 10_000_000
-"""Numbers of one list: a range that would have more is a mistake."""
+MOST_ITEMS = 500_000
+"""Numbers that a script may put into lists beyond those that stand in it, in all its loops."""
+MOST_TOKENS = 1_000_000
+"""Tokens that a script may have read again, in all its loops."""
 
 FUNCTIONS: dict[str, Callable[..., float]] = {
     "Acos": math.acos, "ArcCos": math.acos, "Asin": math.asin, "ArcSin": math.asin,
@@ -77,6 +80,8 @@ def tokens_of(text: str) -> list[Token]:
         if match is None:
             raise FormatError(f"line {line}: {text[at : at + 20].split()[0]!r} cannot be read")
         kind, found = str(match.lastgroup), match.group()
+        if kind == "unclosed":
+            raise FormatError(f"line {line}: the comment that begins here has no */")
         if kind != "skip":
             out.append(Token(kind, found, line))
         line += found.count("\n")
@@ -105,6 +110,8 @@ class Reader:
     def __init__(self, tokens: list[Token], variables: Variables) -> None:
         self.tokens, self.variables = tokens, variables
         self.at = 0
+        self._items_left = MOST_ITEMS + len(tokens)
+        self._tokens_left = MOST_TOKENS + 2 * len(tokens)
 
     # -- tokens
 
@@ -115,6 +122,9 @@ class Reader:
     def next(self) -> Token:
         token = self.token
         self.at = min(self.at + 1, len(self.tokens) - 1)
+        self._tokens_left -= 1
+        if self._tokens_left < 0:
+            raise self.error(f"the loops of this script take more than {MOST_TOKENS:,} steps")
         return token
 
     def has(self, *texts: str) -> bool:
@@ -143,10 +153,17 @@ class Reader:
         return out
 
     def listed(self) -> list[float]:
-        out = list(self._item())
+        out = list(self._counted(self._item()))
         while self.accept(","):
-            out += self._item()
+            out += self._counted(self._item())
         return out
+
+    def _counted(self, items: Iterator[float]) -> Iterator[float]:
+        for item in items:
+            self._items_left -= 1
+            if self._items_left < 0:
+                raise self.error(f"the lists of this script have more than {MOST_ITEMS:,} numbers")
+            yield item
 
     def _item(self) -> Iterator[float]:
         negative = self.has("-") and self.tokens[self.at + 1].text == "{"
@@ -176,7 +193,7 @@ class Reader:
         if step == 0 or not math.isfinite((last - first) / step):
             raise self.error(f"the range {first:g}:{last:g}:{step:g} has no end")
         count = math.floor((last - first) / step + 1e-9) + 1
-        if count > MOST_ITEMS:
+        if count > MOST_ITEMS:  # before the first of them is made
             raise self.error(f"the range {first:g}:{last:g}:{step:g} has {count:.3g} numbers")
         for k in range(count):
             yield first + k * step
@@ -223,10 +240,16 @@ class Reader:
             signs.append(sign.text)
         value = self._atom()
         if self.accept("^"):
-            value = float(value ** self._unary())
+            value = self._power(value, self._unary())
         for text in reversed(signs):
             value = {"-": -value, "+": value, "!": float(not value)}[text]
         return value
+
+    def _power(self, base: float, exponent: float) -> float:
+        power = base**exponent
+        if isinstance(power, complex):
+            raise self.error(f"({base:g})^{exponent:g} is not a real number")
+        return float(power)
 
     def _atom(self) -> float:
         if self.accept("("):
@@ -247,7 +270,7 @@ class Reader:
         if token.text in _NEW:
             return self.variables.new(token.text)
         if token.text in FUNCTIONS and self.has("(", "["):
-            return float(FUNCTIONS[token.text](*self.braced()))
+            return self._applied(token.text, self.braced())
         values = self.look_up(token.text)
         if self.has("[", "("):
             (index,) = self.braced() or [0.0]
@@ -257,6 +280,12 @@ class Reader:
         if len(values) != 1:
             raise self.error(f"{token.text} is a list of {len(values)}; a number was expected")
         return values[0]
+
+    def _applied(self, name: str, values: list[float]) -> float:
+        try:
+            return float(FUNCTIONS[name](*values))
+        except TypeError:
+            raise self.error(f"{name} is not a function of {len(values)} numbers") from None
 
     def look_up(self, name: str) -> list[float]:
         values = self.variables.values.get(name)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import itertools
 import os
+from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -246,9 +247,9 @@ def _walk(lines: Sequence[Floats]) -> tuple[list[tuple[int, bool]], Floats | Non
     """Lines one after the other, each with whether backwards, and where they are not closed."""
     ends = np.array([line[end] for line in lines for end in (0, -1)])
     node = places_of(ends, JOINED * float(np.ptp(np.concatenate(lines), axis=0).max()))
-    at: dict[int, list[int]] = {}
+    at: dict[int, deque[int]] = {}
     for end, place in enumerate(node.tolist()):
-        at.setdefault(place, []).append(end)
+        at.setdefault(place, deque()).append(end)
     walk: list[tuple[int, bool]] = []
     is_walked = [False] * len(lines)
     onward: int | None = 0  # 2k and 2k + 1 are the ends of line k
@@ -256,9 +257,16 @@ def _walk(lines: Sequence[Floats]) -> tuple[list[tuple[int, bool]], Floats | Non
         last = onward ^ 1
         walk.append((onward // 2, onward % 2 == 1))
         is_walked[onward // 2] = True
-        onward = next((e for e in at[node[last]] if not is_walked[e // 2]), None)
+        onward = _next_end(at[node[last]], is_walked)
     is_closed = node[last] == node[0] and all(is_walked)
     return walk, None if is_closed else ends[last]
+
+
+def _next_end(ends: deque[int], is_walked: Sequence[bool]) -> int | None:
+    """The first of the ends at a place whose line is not walked yet; walked ones are dropped."""
+    while ends and is_walked[ends[0] // 2]:
+        ends.popleft()
+    return ends[0] if ends else None
 
 
 def _not_closed(surface: int, loop: int, place: Floats) -> FormatError:

@@ -24,8 +24,8 @@ Background Recombine Transfinite Smoother Show Hide Color Save Coherence Reverse
 PASSED_OVER = frozenset(_MESHING.split())
 """First words of statements that say nothing about the domain."""
 
-MOST_TURNS = 1_000_000
-"""Turns of all loops of a script: more is a mistake."""
+MOST_DEFINED = 100_000
+"""Points, curves and groups that the loops of a script may define."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,8 @@ class _Statements(Reader):
     def __init__(self, tokens: list[Token], variables: Variables) -> None:
         super().__init__(tokens, variables)
         self.script = Script()
-        self._turns = 0
+        self._ends: dict[int, int] = {}  # of loops, by the place where their body begins
+        self._parts: dict[int, tuple[int, str]] = {}  # of conditions, likewise
 
     def statement(self) -> None:
         if self.accept(";"):
@@ -170,9 +171,6 @@ class _Statements(Reader):
         body = self.at
         end = self._end_of("For", "EndFor", opening)
         for value in values:
-            self._turns += 1
-            if self._turns > MOST_TURNS:
-                raise FormatError(f"line {opening.line}: more than {MOST_TURNS:,} turns of loops")
             if name:
                 self.variables.values[name] = [value]
             self.at = body
@@ -212,18 +210,24 @@ class _Statements(Reader):
         return 0.0
 
     def _end_of(self, begin: str, end: str, opening: Token) -> int:
+        if self.at in self._ends:
+            return self._ends[self.at]
         depth = 1
         for k in range(self.at, len(self.tokens)):
             depth += (self.tokens[k].text == begin) - (self.tokens[k].text == end)
             if depth == 0:
+                self._ends[self.at] = k
                 return k
         raise FormatError(f"line {opening.line}: {begin} has no {end}")
 
     def _end_of_part(self, opening: Token) -> tuple[int, str]:
+        if self.at in self._parts:
+            return self._parts[self.at]
         depth = 0
         for k in range(self.at, len(self.tokens)):
             text = self.tokens[k].text
             if depth == 0 and text in ("ElseIf", "Else", "EndIf"):
+                self._parts[self.at] = k, text
                 return k, text
             depth += (text == "If") - (text == "EndIf")
         raise FormatError(f"line {opening.line}: If has no EndIf")
@@ -256,6 +260,8 @@ class _Statements(Reader):
         self.expect(";")
         if sign == "+=" and not kind.startswith("Physical"):
             raise FormatError(f"line {line}: only physical groups are added to")
+        if len(self.script.definitions) > MOST_DEFINED + len(self.tokens):
+            raise FormatError(f"line {line}: loops define more than {MOST_DEFINED:,} entities")
         self.script.definitions.append(Definition(kind, number, values, line, name))
         family = "Curve" if kind in CURVES else kind.split()[0]
         family = {"Plane": "Surface"}.get(family, kind if kind == "Curve Loop" else family)

@@ -31,7 +31,7 @@ from ..required import required_items
 from .content import Array, fields_of, mesh_of
 from .files import read_bytes, replace_files
 from .formats import FORMATS, Format, format_of
-from .located import located
+from .located import located, only_our_errors
 from .outgoing import outgoing, solution_values
 
 __all__ = ["FORMATS", "Format", "read", "read_fields", "read_sol", "write", "write_sol"]
@@ -66,9 +66,10 @@ def read(path: PathLike) -> Mesh:
     read_fields : the fields of the same file.
     """
     path = Path(path)
-    content = format_of(path).load(path, False)
-    with located(path):
-        return mesh_of(content)
+    with only_our_errors(path):
+        content = format_of(path).load(path, False)
+        with located(path):
+            return mesh_of(content)
 
 
 def read_fields(path: PathLike) -> dict[str, Array]:
@@ -93,9 +94,10 @@ def read_fields(path: PathLike) -> dict[str, Array]:
         As `read`; or a field that does not fit the mesh, or two of one name.
     """
     path = Path(path)
-    content = format_of(path).load(path, True)
-    with located(path):
-        return fields_of(content, mesh_of(content))
+    with only_our_errors(path):
+        content = format_of(path).load(path, True)
+        with located(path):
+            return fields_of(content, mesh_of(content))
 
 
 def write(
@@ -173,9 +175,10 @@ def read_sol(path: PathLike) -> NDArray[np.float64]:
 
     path = Path(path)
     binary = _is_binary_sol(path)
-    data = read_bytes(path)
-    with located(path):
-        return decode(data, binary=binary).values
+    with only_our_errors(path):
+        data = read_bytes(path)
+        with located(path):
+            return decode(data, binary=binary).values
 
 
 def write_sol(path: PathLike, values: ArrayLike) -> None:

@@ -17,9 +17,13 @@ from .located import located
 
 
 def read_bytes(path: Path) -> bytes:
-    """Everything that a file holds."""
+    """Everything that a file holds; pipes and devices, which may have no end, are refused."""
     try:
+        if path.exists() and not path.is_file():
+            raise FormatError(f"{path}: cannot be read: it is no regular file")
         return path.read_bytes()
+    except FormatError:
+        raise
     except FileNotFoundError:
         raise FormatError(f"{path}: there is no such file") from None
     except OSError as error:

@@ -34,6 +34,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import FormatError
+from .bounded import read_json
 from .content import Array, Content, refuse_cells
 from .files import text_of, without_mark
 from .located import located
@@ -173,10 +174,7 @@ def _read_names(body: bytes, out: Sections) -> None:
 
 
 def _read_ours(body: bytes, out: Sections) -> None:
-    try:
-        ours = json.loads(text_of(body))
-    except ValueError as error:
-        raise FormatError(f"is not JSON: {error}") from None
+    ours = read_json(text_of(body))
     names = [ours.get("edges", {}), ours.get("regions", {})] if isinstance(ours, dict) else [None]
     for group in names:
         if not isinstance(group, dict) or not all(type(tag) is int for tag in group.values()):

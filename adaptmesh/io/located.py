@@ -1,18 +1,11 @@
-"""Errors in files: where they are, and those of libraries that do not look before they read."""
+"""Errors in files: where they are, and what comes of exceptions that are not ours."""
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 from ..errors import AdaptmeshError, FormatError
-
-_OF_DAMAGE = (
-    ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RuntimeError, OSError,
-    struct.error,
-)  # fmt: skip
-"""What libraries raise where a damaged file is not what they take it for."""
 
 
 @contextmanager
@@ -25,11 +18,29 @@ def located(place: object, kind: type[AdaptmeshError] = FormatError) -> Iterator
 
 
 @contextmanager
-def refusing(what: object, *errors: type[Exception]) -> Iterator[None]:
-    """Make a `FormatError` of what a library raises on a damaged file, and of `errors`."""
+def refusing(what: object) -> Iterator[None]:
+    """Make a `FormatError` of whatever a library raises on a damaged file."""
     try:
         yield
-    except AdaptmeshError:
+    except (AdaptmeshError, Warning):
         raise
-    except _OF_DAMAGE + errors as error:
+    except Exception as error:
         raise FormatError(f"{what}: {error}") from None
+
+
+@contextmanager
+def only_our_errors(path: object) -> Iterator[None]:
+    """Make a `FormatError` of whatever no reader has foreseen in a file.
+
+    The last line of defence, around every function that reads a file: the exception becomes the
+    ``__cause__``, by which tests find that a reader has to be mended.
+    """
+    try:
+        yield
+    except (AdaptmeshError, Warning):
+        raise
+    except Exception as error:
+        kind = type(error).__name__
+        raise FormatError(
+            f"{path}: is damaged, or not what its suffix says: {kind}: {error}"
+        ) from error

@@ -25,6 +25,7 @@ import re
 import numpy as np
 
 from ..errors import FormatError
+from .bounded import read_json
 from .content import Content, refuse_cells
 from .files import text_of
 from .located import located
@@ -105,8 +106,8 @@ def _commented_names(text: str) -> dict[str, dict[str, int]]:
 
 def _unquoted(quoted: str) -> str:
     try:
-        return str(json.loads(quoted))
-    except ValueError:
+        return str(read_json(quoted))
+    except FormatError:
         raise FormatError(f"the name {quoted[:80]!r} in a comment is damaged") from None
 
 

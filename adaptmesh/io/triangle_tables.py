@@ -11,7 +11,6 @@ whose further words do not matter; everything after ``#`` is a comment. In comme
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 from typing import NamedTuple
@@ -19,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import FormatError
+from .bounded import read_json
 from .content import Array
 from .files import read_text
 
@@ -120,8 +120,8 @@ class Table:
         """Names and numbers in comments of ours of that kind."""
         found = [words for words in self._comments if len(words) == 3 and words[0] == kind]
         try:
-            return [(str(json.loads(name)), int(number)) for _, number, name in found]
-        except ValueError:
+            return [(str(read_json(name)), int(number)) for _, number, name in found]
+        except (FormatError, ValueError):
             raise FormatError(f"{self.path}: a comment on {kind} has no number and name") from None
 
 

@@ -189,7 +189,11 @@ class _Reader:
             if not file.has_next("CONNECTIVITY"):
                 raise FormatError("has OFFSETS without CONNECTIVITY")
             vertices = file.numbers(file.word(file.line(), 1), size)
-            return vertices, offsets if count else np.zeros(1, np.int64)
+            if not count:
+                return vertices, np.zeros(1, np.int64)
+            if offsets[0] != 0:
+                raise FormatError(f"the first of OFFSETS is {offsets[0]}, not 0")
+            return vertices, offsets
         numbers = file.numbers("int", size)
         heads, at, listed = [], 0, numbers.tolist()
         while at < size and listed[at] >= 0:

@@ -110,6 +110,8 @@ def content_of(grid: Grid) -> Content:
     if points.ndim != 2 or points.shape[1] != 3:
         raise FormatError(f"the points have shape {points.shape}; three coordinates were expected")
     triangles, edges, is_triangle, is_edge = _cells(grid)
+    _same_lengths("points", grid.point_data, len(points))
+    _same_lengths("cells", grid.cell_data, len(grid.types))
     point_data, cell_data = dict(grid.point_data), dict(grid.cell_data)
     metric = take_metric(point_data)
     return Content(
@@ -124,12 +126,21 @@ def content_of(grid: Grid) -> Content:
     )
 
 
+def _same_lengths(what: str, arrays: Mapping[str, Array], count: int) -> None:
+    for name, values in arrays.items():
+        if len(values) != count:
+            raise FormatError(
+                f"array {name!r} has {len(values)} rows for {count} {what}: the file is damaged"
+            )
+
+
 def _cells(grid: Grid) -> tuple[Array, Array, Array, Array]:
     """Triangles, edges, and which cells are the ones and the others."""
-    vertices, starts, types = grid.connectivity, grid.offsets[:-1], grid.types
-    sizes = np.diff(grid.offsets)
-    if len(types) != len(sizes) or (sizes < 0).any() or sizes.sum() != len(vertices):
+    vertices, ends, types = grid.connectivity, grid.offsets, grid.types
+    rises = len(ends) and ends[0] == 0 and (ends[1:] >= ends[:-1]).all()
+    if not rises or ends[-1] != len(vertices) or len(types) != len(ends) - 1:
         raise FormatError("the vertices of the cells, their numbers and types do not fit together")
+    starts, sizes = ends[:-1], np.diff(ends)
     known = np.isin(types, [0, *_VERTICES, _LINE, _TRIANGLE])
     others, counts = np.unique(types[~known], return_counts=True)
     found = zip(others.tolist(), counts.tolist(), strict=True)

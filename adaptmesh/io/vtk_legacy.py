@@ -7,6 +7,7 @@ import re
 import numpy as np
 
 from ..errors import FormatError
+from .bounded import whole_number
 from .content import Array
 from .files import text_of, without_mark
 from .records import BinaryCursor, TextCursor
@@ -22,8 +23,9 @@ KINDS = {
 
 _NOT_BLANK = re.compile(rb"\S")
 _EMPTY_LINE = re.compile(rb"\n[ \t]*\r?\n")
-_HEADER = re.compile(
-    rb"# vtk DataFile Version +\d+\.\d+[^\n]*\n[^\n]*\n\s*(ASCII|BINARY)\s+DATASET\s+(\w+)[^\n]*\n",
+_HEADER = re.compile(  # numbers and words of bounded length: a match takes linear time
+    rb"# vtk DataFile Version {1,9}\d{1,3}\.\d{1,3}[^\n]*\n[^\n]*\n"
+    rb"\s*(ASCII|BINARY)\s+DATASET\s+(\w{1,40})[^\n]*\n",
     re.IGNORECASE,
 )
 
@@ -48,7 +50,8 @@ class LegacyFile:
             return None
         stop = self._data.find(b"\n", start)
         self._at = len(self._data) if stop < 0 else stop + 1
-        return text_of(self._data[start : self._at]).split()
+        words = self._data[start : self._at].split()  # of bytes: fewer characters are blanks
+        return text_of(b" ".join(words)).split(" ")
 
     def has_next(self, keyword: str) -> bool:
         """Whether the next line starts with that word."""
@@ -69,10 +72,7 @@ class LegacyFile:
 
     def whole(self, words: list[str] | None, place: int) -> int:
         """A word of a line as a count."""
-        word = self.word(words, place)
-        if not (word.isascii() and word.isdecimal() and len(word) < 20):
-            raise FormatError(f"a count was expected, found {word[:24]!r}")
-        return int(word)
+        return whole_number(self.word(words, place))
 
     def numbers(self, kind: str, count: int, columns: int = 1) -> Array:
         """The next numbers, (count,) or (count, columns), reals as float64, others as int64."""
@@ -92,9 +92,23 @@ class LegacyFile:
     def _words(self, code: str, count: int) -> Array:
         if 2 * count > len(self._data) - self._at + 1:
             raise FormatError(f"cut short: {count} numbers do not fit into what is left")
-        found = self._data[self._at :].split(None, count)
-        self._at = len(self._data) - (len(found[count]) if len(found) > count else 0)
-        return TextCursor(b" ".join(found[:count])).rows(count, (code, 1))[0][:, 0]
+        found = self._next_words(count)
+        return TextCursor(b" ".join(found)).rows(count, (code, 1))[0][:, 0]
+
+    def _next_words(self, count: int) -> list[bytes]:
+        """Take as many words; all that are left if there are fewer.
+
+        They are looked for in a piece of the file that is doubled until it has them, so that the
+        time goes with what is taken and not with what is left.
+        """
+        size = 32 * (count + 1)
+        while True:
+            piece = self._data[self._at : self._at + size]
+            found = piece.split(None, count)
+            if len(found) > count or self._at + size >= len(self._data):
+                self._at += len(piece) - (len(found[count]) if len(found) > count else 0)
+                return found[:count]
+            size *= 2
 
     def _bytes(self, code: str, count: int) -> Array:
         cursor = BinaryCursor(self._data, ">")

@@ -7,7 +7,6 @@ FieldData, and of a file with several pieces it reads only the cells of the last
 from __future__ import annotations
 
 import base64
-import re
 import zlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
@@ -16,8 +15,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from ..errors import FormatError
+from .bounded import Allowance, read_xml
 from .content import Array, Content, check_vertices
-from .files import readable_xml
 from .vtk_grid import Grid, content_of, grid_of, is_ours, take_names
 from .vtu_arrays import TYPES, VtuArrays
 
@@ -109,25 +108,22 @@ def _opened(data: bytes) -> tuple[Element, VtuArrays]:
 
     Raw appended data makes the file invalid as XML, so it is cut out before parsing.
     """
-    from xml.etree import ElementTree
-
+    size = len(data)
     appended, encoding = b"", "base64"
-    opening = re.search(rb"<AppendedData[^>]*>", data)
-    if opening:
-        start, stop = data.find(b"_", opening.end()), data.rfind(b"</AppendedData")
-        if start < 0 or stop < start:
+    begin = data.find(b"<AppendedData")
+    if begin >= 0:
+        end = data.find(b">", begin) + 1
+        start, stop = data.find(b"_", end), data.rfind(b"</AppendedData")
+        if not end or start < 0 or stop < start:
             raise FormatError("<AppendedData> is not closed: the file is cut short")
         appended = data[start + 1 : stop]
-        encoding = "raw" if b"raw" in opening.group() else "base64"
-        data = data[: opening.end()] + data[stop:]
-    try:
-        root = ElementTree.fromstring(readable_xml(data))
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise FormatError(f"is cut short or not XML: {error}") from None
+        encoding = "raw" if b"raw" in data[begin:end] else "base64"
+        data = data[:end] + data[stop:]
+    root = read_xml(data)
     if root.tag != "VTKFile" or root.get("type") != "UnstructuredGrid":
         what = root.get("type", f"<{root.tag}>")
         raise FormatError(f"holds {what}, not a VTK UnstructuredGrid; save it as one")
-    return root, VtuArrays(root.attrib, appended, encoding)
+    return root, VtuArrays(root.attrib, appended, encoding, Allowance(size))
 
 
 def _piece(piece: Element, arrays: VtuArrays) -> Content:

@@ -13,14 +13,13 @@ from __future__ import annotations
 
 import base64
 import binascii
-import lzma
-import zlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from ..errors import FormatError
+from .bounded import Allowance, inflated, whole_number
 from .content import Array
 from .located import located
 from .records import TextCursor
@@ -35,13 +34,15 @@ TYPES: dict[str, np.dtype[np.generic]] = {
         "UInt8", "UInt16", "UInt32", "UInt64",
     )
 }  # fmt: skip
-_COMPRESSORS = ("vtkZLibDataCompressor", "vtkLZMADataCompressor")
+_COMPRESSORS = {"vtkZLibDataCompressor": "zlib", "vtkLZMADataCompressor": "lzma"}
 
 
 class VtuArrays:
     """Reads the arrays of one file; `attributes` are those of its root."""
 
-    def __init__(self, attributes: Mapping[str, str], appended: bytes, encoding: str) -> None:
+    def __init__(
+        self, attributes: Mapping[str, str], appended: bytes, encoding: str, allowance: Allowance
+    ) -> None:
         self._order: Literal["<", ">"] = ">" if attributes.get("byte_order") == "BigEndian" else "<"
         header = attributes.get("header_type", "UInt32")
         if header not in ("UInt32", "UInt64"):
@@ -50,6 +51,7 @@ class VtuArrays:
         self._compressor = attributes.get("compressor")
         self._appended = appended
         self._appended_is_raw = encoding == "raw"
+        self._allowance = allowance
 
     def read(self, element: Element) -> Array:
         """Array of one <DataArray> (n,) or (n, c)."""
@@ -58,20 +60,22 @@ class VtuArrays:
             if kind not in TYPES:
                 raise FormatError(f"type {kind!r} is unknown")
             values = self._numbers(element, TYPES[kind])
-            columns = element.get("NumberOfComponents") or "1"
-            if not columns.isdecimal() or not int(columns) or values.size % int(columns):
+            columns = whole_number(
+                element.get("NumberOfComponents") or "1", "a number of components"
+            )
+            if not columns or values.size % columns:
                 raise FormatError(f"{values.size} numbers are not rows of {columns}")
-            return values if int(columns) == 1 else values.reshape(-1, int(columns))
+            return values if columns == 1 else values.reshape(-1, columns)
 
     def _numbers(self, element: Element, dtype: np.dtype[np.generic]) -> Array:
         text = (element.text or "").encode()
         if element.get("format", "ascii") == "ascii":
             return _from_text(text, dtype)
         if element.get("format") == "appended":
-            offset = element.get("offset", "").strip()
-            if not offset.isdecimal() or int(offset) > len(self._appended):
-                raise FormatError(f"offset {offset!r} is not in the appended data")
-            stream = _Stream(self._appended[int(offset) :], raw=self._appended_is_raw)
+            offset = whole_number(element.get("offset", ""), "an offset")
+            if offset > len(self._appended):
+                raise FormatError(f"offset {offset} is not in the appended data")
+            stream = _Stream(self._appended, raw=self._appended_is_raw, at=offset)
         else:
             stream = _Stream(b"".join(text.split()), raw=False)
         data = self._decompressed(stream) if self._compressor else self._plain(stream)
@@ -82,6 +86,7 @@ class VtuArrays:
     def _plain(self, stream: _Stream) -> bytes:
         word = self._header.itemsize
         size = int(np.frombuffer(stream.peek(word), self._header)[0])
+        self._allowance.take(size)
         if stream.ends_after(word):
             stream.take(word)
             return stream.take(size)
@@ -92,6 +97,7 @@ class VtuArrays:
             raise FormatError(
                 f"is compressed by {self._compressor}; save the file with zlib compression or none"
             )
+        how = _COMPRESSORS[self._compressor]
         word = self._header.itemsize
         count = int(np.frombuffer(stream.peek(word), self._header)[0])
         if not count:
@@ -101,32 +107,21 @@ class VtuArrays:
         expected = [full] * count
         if last:
             expected[-1] = last
+        self._allowance.take(sum(expected))
         blocks, at, out = stream.take(sum(sizes)), 0, []
         for size, length in zip(sizes, expected, strict=True):
-            out.append(self._block(blocks[at : at + size], length))
+            out.append(inflated(blocks[at : at + size], length, how))
             at += size
         return b"".join(out)
-
-    def _block(self, data: bytes, length: int) -> bytes:
-        zlib_used = self._compressor == _COMPRESSORS[0]
-        machine = zlib.decompressobj() if zlib_used else lzma.LZMADecompressor()
-        try:
-            # one byte more than expected: the end mark is reached, a bomb is not unpacked
-            out = machine.decompress(data, min(length + 1, 1 << 40))
-        except (zlib.error, lzma.LZMAError, EOFError) as error:
-            raise FormatError(f"a compressed block is damaged: {error}") from None
-        if len(out) != length or not machine.eof:
-            raise FormatError("a compressed block has the wrong size: the file is damaged")
-        return out
 
 
 class _Stream:
     """Bytes in a row, raw or in base64, each `take` one group of base64 by itself."""
 
-    def __init__(self, data: bytes, *, raw: bool) -> None:
+    def __init__(self, data: bytes, *, raw: bool, at: int = 0) -> None:
         self._data = data
         self._raw = raw
-        self._at = 0
+        self._at = at
 
     def peek(self, count: int) -> bytes:
         length = count if self._raw else -(-count // 3) * 4

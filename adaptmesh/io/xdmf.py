@@ -25,8 +25,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from ..errors import FormatError
+from .bounded import read_json, read_xml
 from .content import Array, Content, check_vertices, refuse_cells
-from .files import readable_xml
 from .xdmf_arrays import XdmfArrays, import_h5py
 
 if TYPE_CHECKING:
@@ -168,12 +168,7 @@ def _is_integer(values: Array | None) -> bool:
 
 
 def _domain(data: bytes) -> Element:
-    from xml.etree import ElementTree
-
-    try:
-        root = ElementTree.fromstring(readable_xml(data))
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise FormatError(f"is cut short or not XML: {error}") from None
+    root = read_xml(data)
     domain = root.find("Domain")
     if root.tag != "Xdmf" or domain is None:
         raise FormatError("is XML, but not XDMF: it has no <Xdmf> with a <Domain>")
@@ -319,8 +314,8 @@ def _names(domain: Element, what: str) -> dict[str, int]:
         if information.get("Name") != what:
             continue
         try:
-            names = json.loads(information.get("Value", ""))
+            names = read_json(information.get("Value", ""))
             return {str(name): int(number) for name, number in names.items()}
-        except (ValueError, TypeError, AttributeError, OverflowError):
+        except (FormatError, ValueError, TypeError, AttributeError, OverflowError):
             raise FormatError(f"the <Information> {what!r} does not hold names") from None
     return {}

@@ -152,7 +152,7 @@ def test_expressions():
         ('Merge "a.step";', "Merge"),
         ("For i In {1:3}\n", "For has no EndFor"),
         ("For i In {0:1e9}\nEndFor", "numbers"),
-        ("For i In {0:999999}\nFor j In {0:9}\nEndFor\nEndFor", "turns of loops"),
+        ("For i In {0:99999}\nFor j In {0:9}\nEndFor\nEndFor", "lists of this script"),
         ("If (1)\n", "If has no EndIf"),
         ("a = 1/0;", "division"),
         ("a = Log(-1);", "line 1"),

@@ -1,0 +1,274 @@
+"""Files made to do harm: small ones that would cost gigabytes or minutes, or read another file.
+
+Each is refused, by an error that a reader raises on purpose and that names the file, within little
+memory and time. `test_io_damage.py` has files that were damaged by accident.
+"""
+
+import base64
+import json
+import lzma
+import os
+import time
+import zlib
+
+import numpy as np
+import pytest
+from reference.damage import little_memory, little_time
+
+import adaptmesh as am
+from adaptmesh.io import bounded
+
+SECONDS = 5  # of processor time; most take milliseconds
+
+
+def refused(read, path, match=None):
+    """Check that reading ends in an error of ours that was foreseen, soon, and in little memory."""
+    began = time.process_time()
+    with little_memory(), little_time(), pytest.raises(am.AdaptmeshError, match=match) as caught:
+        read(path)
+    assert path.stem in str(caught.value)
+    assert caught.value.__cause__ is None, "only the last line of defence has caught it"
+    assert time.process_time() - began < SECONDS
+
+
+@pytest.fixture
+def file(tmp_path):
+    def write(name, content):
+        path = tmp_path / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    return write
+
+
+# ------------------------------------------------------------------------------------ any file
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
+def test_a_pipe_is_not_waited_for(tmp_path):
+    path = tmp_path / "a.wkt"
+    os.mkfifo(path)
+    refused(am.read_domain, path, "no regular file")
+
+
+# ---------------------------------------------------------------------------------- numbers, JSON
+
+LONG = "1" * 5000  # Python's `int` takes 4300 digits
+
+
+@pytest.mark.parametrize("text", ["", " ", "-1", "+1", "1.0", "1_0", "²", "٣", "0x1", LONG])
+def test_whole_numbers(text):
+    assert bounded.whole_number(" 17\n") == 17
+    assert bounded.whole_number(b"17") == 17
+    with pytest.raises(am.FormatError, match="a count was expected"):
+        bounded.whole_number(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[" * 100_000,
+        "[" * 100_000 + "]" * 100_000,
+        '{"a":' * 100_000,
+        '{"type":"Polygon","coordinates":' + "[" * 100_000 + "]" * 100_000 + "}",
+        r'["\\", ' + "[" * 1000,
+        r'["]]]]\"]]]", ' + "[" * 1000,
+    ],
+)
+def test_deep_json(file, text):
+    refused(am.read_domain, file("a.geojson", text), "nested more than 200 levels")
+
+
+def test_brackets_in_strings_are_not_levels():
+    text = json.dumps(["[" * 1000, '\\"' + "{" * 1000, [1]] * 3)
+    assert bounded.read_json(text) == json.loads(text)
+    assert bounded.read_json("[" * 200 + "]" * 200)
+
+
+def test_json_of_long_numbers(file):
+    ring = '{"type":"Polygon","coordinates":[[[%s,0],[1,0],[1,1],[%s,0]]]}'
+    refused(am.read_domain, file("a.geojson", ring % (LONG, LONG)))
+    digits = "1" * 25
+    domain = am.read_domain(file("b.geojson", ring % (f"0.{LONG}", f"0.{LONG}")))
+    assert domain.area == pytest.approx(0.5 * (1 - 1 / 9))
+    assert bounded.read_json(digits) == float(digits)
+
+
+# ------------------------------------------------------------------------------------------- XML
+
+
+@pytest.mark.parametrize(
+    ("inner", "body", "why"),
+    [
+        ('<!ENTITY a "b">' + '<!ENTITY c "&a;&a;">', "&c;", "other entities"),
+        (f'<!ENTITY a "{"x" * 10_000}">', "&a;" * 10_000, "expand"),
+        (f'<!ATTLIST g b CDATA "{"x" * 10_000}">', "<g/>" * 10_000, "expand"),
+        ('<!ENTITY a SYSTEM "file:///etc/passwd">', "&a;", "another file"),
+        ('<!ENTITY % a SYSTEM "other.dtd"> %a;', "", "another file"),
+        ("", "<g>" * 1000 + "</g>" * 1000, "nested more than 200"),
+    ],
+)
+@pytest.mark.parametrize("suffix", [".svg", ".vtu", ".xdmf"])
+def test_xml_that_expands(file, inner, body, why, suffix):
+    pytest.importorskip("svgelements")
+    path = file(f"a{suffix}", f"<!DOCTYPE svg [{inner}]>\n<svg>{body}</svg>")
+    refused(am.read_domain, path, why)
+
+
+def test_entities_of_illustrator():
+    text = b'<!DOCTYPE svg [<!ENTITY ns "http://www.w3.org/2000/svg">]><svg xmlns="&ns;"/>'
+    assert bounded.read_xml(text).tag == "{http://www.w3.org/2000/svg}svg"
+
+
+# ------------------------------------------------------------------------------------------ .geo
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a[]={1,2};\nFor i In {1:60}\na[]+=a[];\nEndFor\n",
+        "For i In {1:100000000}\nEndFor\n",
+        "For i In {1:1000}\nFor j In {1:1000}\nFor k In {1:1000}\nEndFor\nEndFor\nEndFor\n",
+        "For i In {1:400000}\n If(0) " + "a=1;" * 10_000 + " EndIf EndFor\n",
+        "For i In {1:400000}\n For j In {1:0} " + "a=1;" * 10_000 + " EndFor EndFor\n",
+        "For i In {1:400000}\n Point(i)={i,0,0}; EndFor\n",
+        "a[]={1:500000}; b[]=a[]; c[]={a[],b[]};",
+        "/*" * 200_000,
+        "a=" + "(" * 50_000,
+        "a=" + "2^" * 50_000 + "1;",
+        "a=" + "9" * 500_000 + ";",
+    ],
+)
+def test_geo_that_grows(file, text):
+    refused(am.read_domain, file("a.geo", text))
+
+
+@pytest.mark.parametrize(
+    ("expression", "why"),
+    [
+        ("(-8)^0.5", "not a real number"),
+        ("Sqrt(1, 2, 3)", "Sqrt is not a function of 3 numbers"),
+        ("Round(1, 2)", "Round is not a function of 2 numbers"),
+        ("Max(1)", "Max is not a function of 1 numbers"),
+        ("Cos({})", "Cos is not a function"),
+        ("2^1e308", "line 1"),
+        ("0^-1", "line 1"),
+        ("Exp(1e4)", "line 1"),
+        ("Fmod(1, 0)", "line 1"),
+    ],
+)
+def test_geo_of_impossible_numbers(file, expression, why):
+    refused(am.read_domain, file("a.geo", f"a = {expression};"), why)
+
+
+def test_geo_loops_of_some_size_are_read(file):
+    text = """
+    n = 500;
+    For k In {1:n} Point(k) = {Cos(2*Pi*k/n), Sin(2*Pi*k/n), 0}; EndFor
+    For k In {1:n} Line(k) = {k, k % n + 1}; EndFor
+    Line Loop(1) = {1:n}; Plane Surface(1) = {1};
+    """
+    area = 250 * np.sin(2 * np.pi / 500)
+    assert am.read_domain(file("a.geo", text)).area == pytest.approx(area, rel=1e-12)
+
+
+# ------------------------------------------------------------------------------------ .vtu, .vtk
+
+
+def vtu(arrays, attributes="", points=3, appended=""):
+    """A file of one triangle with the points, or whatever `arrays` says instead."""
+    return (
+        f'<VTKFile type="UnstructuredGrid" byte_order="LittleEndian" {attributes}>'
+        f'<UnstructuredGrid><Piece NumberOfPoints="{points}" NumberOfCells="1">{arrays}'
+        f"</Piece></UnstructuredGrid>{appended}</VTKFile>"
+    )
+
+
+def zeros(megabytes, how="zlib"):
+    """So many MiB of zeros, as one compressed block with its header in base64."""
+    compressed = (zlib if how == "zlib" else lzma).compress(bytes(megabytes << 20))
+    head = np.array([1, megabytes << 20, 0, len(compressed)], "<u8").tobytes()
+    return (base64.b64encode(head) + base64.b64encode(compressed)).decode()
+
+
+COMPRESSED = 'header_type="UInt64" compressor="vtkZLibDataCompressor"'
+REAL = '<DataArray type="Float64" Name="{}" NumberOfComponents="{}" format="{}"{}>{}</DataArray>'
+
+
+@pytest.mark.parametrize("how", ["zlib", "lzma"])
+def test_vtu_of_zeros(file, how):
+    name = COMPRESSED.replace("ZLib", "LZMA" if how == "lzma" else "ZLib")
+    points = "<Points>" + REAL.format("Points", 3, "binary", "", zeros(70, how)) + "</Points>"
+    refused(am.read, file("a.vtu", vtu(points, name)), "more than 64 MiB")
+    points = "<PointData>" + REAL.format("u", 1, "binary", "", zeros(10, how)) * 10
+    refused(am.read, file("a.vtu", vtu(points + "</PointData>", name)), "more than 64 MiB")
+
+
+def test_vtu_that_uses_one_block_again_and_again(file):
+    appended = f'<AppendedData encoding="base64">_{zeros(1)}</AppendedData>'
+    arrays = REAL.format("u", 1, "appended", ' offset="0"', "") * 1000
+    text = vtu(f"<PointData>{arrays}</PointData>", COMPRESSED, appended=appended)
+    refused(am.read, file("a.vtu", text), "more than 64 MiB")
+
+
+def test_vtu_of_many_arrays_takes_the_time_of_its_size(file):
+    raw = np.array(8, "<u4").tobytes() + bytes(8)
+    arrays = REAL.format("u", 1, "appended", ' offset="0"', "") * 20_000
+    head, tail = vtu(f"<PointData>{arrays}</PointData>", appended="|").encode().split(b"|")
+    data = b'<AppendedData encoding="raw">_' + raw + bytes(5_000_000) + b"</AppendedData>"
+    refused(am.read, file("a.vtu", head + data + tail), "Cells")
+    refused(am.read, file("b.vtu", "<AppendedData" * 200_000), "not closed")
+
+
+@pytest.mark.parametrize("number", [LONG, "-1", "1.5", "²", "99999999999999999999", "0"])
+def test_vtu_numbers(file, number):
+    points = REAL.format("Points", number, "ascii", "", "0 0 0 1 0 0 0 1 0")
+    refused(am.read, file("a.vtu", vtu(f"<Points>{points}</Points>")), "components|rows of")
+    points = REAL.format("Points", 3, "appended", f' offset="{number}"', "")
+    end = '<AppendedData encoding="raw">_abc</AppendedData>'
+    refused(am.read, file("a.vtu", vtu(f"<Points>{points}</Points>", appended=end)))
+
+
+def test_what_compresses_well_is_read(tmp_path):
+    x = np.linspace(0, 1, 201)
+    points = np.stack(np.meshgrid(x, x), axis=-1).reshape(-1, 2)
+    corner = (np.arange(200)[:, None] * 201 + np.arange(200)).ravel()
+    lower = np.stack([corner, corner + 1, corner + 201], axis=1)
+    upper = np.stack([corner + 1, corner + 202, corner + 201], axis=1)
+    mesh = am.Mesh(points, np.concatenate([lower, upper]))
+    fields = {f"u{k}": np.zeros(len(points)) for k in range(100)}
+    path = tmp_path / "a.vtu"
+    am.write(path, mesh, **fields)
+    assert path.stat().st_size < 3_000_000
+    assert (am.read(path).points == points).all()
+    assert len(am.io.read_fields(path)) == 100
+
+
+VTK = "# vtk DataFile Version {}\nx\n{}\nDATASET UNSTRUCTURED_GRID\n{}"
+POINTS = "POINTS 3 double\n0 0 0 1 0 0 0 1 0\n"
+CELLS = "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n"
+OFFSETS = "CELLS {} 3\nOFFSETS vtktypeint64\n{}\nCONNECTIVITY int\n0 1 2\nCELL_TYPES {}\n{}\n"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        VTK.format("5.1", "BINARY", "\x1d\n"),
+        VTK.format("3.0", "ASCII", f"\x1c\x1d\x1e\n{POINTS}"),
+        VTK.format("3.0", "ASCII", f"{POINTS}{CELLS}CELL_DATA 1\nFIELD F 1\nu 1 2 int\n1 2\n"),
+        VTK.format("3.0", "ASCII", f"{POINTS}{CELLS}POINT_DATA 3\nFIELD F 1\nu 1 2 int\n1 2\n"),
+        VTK.format("5.1", "ASCII", POINTS + OFFSETS.format(2, "9 12", 1, "5")),
+        VTK.format("5.1", "ASCII", POINTS + OFFSETS.format(3, "0 9 3", 2, "5 5")),
+        VTK.format("5.1", "ASCII", POINTS + OFFSETS.format(3, f"0 {2**63 - 1} 3", 2, "5 5")),
+        VTK.format("5.1", "ASCII", POINTS + OFFSETS.format(2, "-3 3", 1, "5")),
+        VTK.format("3.0", "ASCII", f"POINTS {LONG} double\n0 0 0\n"),
+        VTK.format("3.0", "ASCII", f"{POINTS}CELLS 0 0\nCELL_TYPES 0\n"),
+        VTK.format("1" * 500_000 + ".0", "ASCII", POINTS),
+        VTK.format("1." + "0" * 500_000, "ASCII", POINTS),
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET " + "x" * 500_000,
+        VTK.format("3.0", "ASCII", "FIELD F 50000\n" + "u 1 1 int\n1\n" * 50_000 + " " * 3_000_000),
+        VTK.format("3.0", "ASCII", "POINTS 1 double\n" + " " * 3_000_000),
+    ],
+)  # fmt: skip
+def test_vtk_that_does_not_fit_together(file, text):
+    refused(am.read, file("a.vtk", text))
