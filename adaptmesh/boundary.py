@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,8 @@ class Outline:
         The points that are triangulated, and the metric at each.
     segments : (k, 2) array of int32
         The constrained edges between them, of the domain or spans of chords of its curves.
+    segment_owners : (k,) array of int32
+        The segment of the domain that each is; of a span, one of its run.
     pieces : (p, 2) array of int32
         These edges, divided where points lie on them, each in the direction in which it is cut.
     piece_segments : (p,) array of int32
@@ -41,18 +43,49 @@ class Outline:
     cuts, cut_tensors : (c, 2), (c, 3) arrays
         The cuts, and the metric at each.
     piece : (c,) array of int32
-        The piece that each cut lies on; those of a piece are in order.
+        The piece that each cut lies on, ascending; those of a piece are in order.
+    ties : (t, 4) array of int
+        Pieces that periodic boundaries tie, and which ends of theirs correspond; see `tied_cuts`.
     """
 
     points: Floats
     tensors: Floats
     segments: Ints
+    segment_owners: Ints
     pieces: Ints
     piece_segments: Ints
     is_span: NDArray[np.bool_]
     cuts: Floats
     cut_tensors: Floats
     piece: Ints
+    ties: Index
+
+    def mended(self, made: NDArray[np.bool_]) -> Outline:
+        """What to try next, when these of the cuts (c,) could be made; itself if that is enough.
+
+        A span must have all of its cuts, and is divided at them; of cuts that are tied both are
+        made, or none. Other edges stay longer than unit where there is no room for a cut.
+        """
+        incomplete = np.zeros(len(self.pieces), bool)
+        incomplete[self.piece[~made]] = True
+        hidden = incomplete & self.is_span
+        if hidden.any():
+            return self.divided(hidden)
+        left_out = np.zeros(len(made), bool)
+        for i, j, a, b in self.ties[incomplete[self.ties[:, :2]].any(axis=1)].tolist():
+            mine, images = np.flatnonzero(self.piece == i), np.flatnonzero(self.piece == j)
+            pair = np.stack([mine, images if a == b else images[::-1]])
+            left_out[pair[:, ~made[pair].all(axis=0)]] = True
+        return self.without(left_out) if left_out.any() else self
+
+    def without(self, cuts: NDArray[np.bool_]) -> Outline:
+        """The same without some of its cuts (c,)."""
+        return replace(
+            self,
+            cuts=self.cuts[~cuts],
+            cut_tensors=self.cut_tensors[~cuts],
+            piece=self.piece[~cuts],
+        )
 
     def divided(self, spans: NDArray[np.bool_]) -> Outline:
         """The same, but these spans (p,) are divided at all their cuts."""
@@ -67,16 +100,19 @@ class Outline:
         gone = {tuple(sorted(pair)) for pair in self.pieces[spans].tolist()}
         stays = [tuple(sorted(pair)) not in gone for pair in self.segments.tolist()]
         chords = np.concatenate(pieces).astype(np.int32)
+        owner = np.concatenate(owners)
         return Outline(
             np.concatenate([self.points, self.cuts[moved]]),
             np.concatenate([self.tensors, self.cut_tensors[moved]]),
             np.concatenate([self.segments[stays], chords]),
+            np.concatenate([self.segment_owners[stays], owner]).astype(np.int32),
             np.concatenate([self.pieces[~spans], chords]),
-            np.concatenate([self.piece_segments[~spans], *owners]).astype(np.int32),
+            np.concatenate([self.piece_segments[~spans], owner]).astype(np.int32),
             np.concatenate([self.is_span[~spans], np.ones(len(chords), bool)]),
             self.cuts[~moved],
             self.cut_tensors[~moved],
             new_number[self.piece[~moved]].astype(np.int32),
+            self.ties,
         )
 
 
@@ -103,20 +139,21 @@ def cut_outline(domain: Domain, field: ControlSpace, most_points: int) -> Outlin
     _check_budget(len(vertices) + total, most_points)
     cuts, piece = sampler.cut()
     piece = free[piece].astype(np.int32)
-    if domain.periodic:
-        cuts, piece = tied_cuts(
-            vertices, pieces, cuts, piece, _ties(domain, kept, vertices, pieces)
-        )
+    ties = _ties(domain, kept, vertices, pieces)
+    if len(ties):
+        cuts, piece = tied_cuts(vertices, pieces, cuts, piece, ties)
     straight = Outline(
         vertices,
         tensors,
         number[domain.segments[is_straight]],
+        np.flatnonzero(is_straight).astype(np.int32),
         pieces,
         domain.piece_segments[kept],
         np.zeros(len(pieces), bool),
         cuts,
         field(cuts),
         piece,
+        ties,
     )
     if not curved.runs:
         return straight
@@ -167,16 +204,19 @@ def _with_spans(
     on_run = np.flatnonzero(domain.curved.segment_runs >= 0)[::-1]
     first_of_run[domain.curved.segment_runs[on_run]] = on_run
     skeleton = chords.points[inner]
+    owners = first_of_run[chords.run[spans[:, 0]]]
     return Outline(
         np.concatenate([straight.points, skeleton]),
         np.concatenate([straight.tensors, field(skeleton)]),
         np.concatenate([straight.segments, ends]),
+        np.concatenate([straight.segment_owners, owners]),
         np.concatenate([straight.pieces, ends]),
-        np.concatenate([straight.piece_segments, first_of_run[chords.run[spans[:, 0]]]]),
+        np.concatenate([straight.piece_segments, owners]),
         np.concatenate([straight.is_span, np.ones(s, bool)]),
         np.concatenate([straight.cuts, cut]),
         np.concatenate([straight.cut_tensors, field(cut)]),
         np.concatenate([straight.piece, len(straight.pieces) + span[~is_last]]).astype(np.int32),
+        straight.ties,
     )
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from .domain_input import OR_REPAIR
 
 if TYPE_CHECKING:
+    from .boundary import Outline
     from .domain import Domain
 
 
@@ -42,6 +43,22 @@ def fault_text(domain: Domain, kind: str, i: int, j: int, x: float, y: float) ->
         "empty_domain": "nothing is left inside: every part of the domain is a hole",
     }
     return messages.get(kind, f"{kind} at {place}")
+
+
+def too_near_text(
+    domain: Domain, outline: Outline, kind: str, i: int, j: int, x: float, y: float
+) -> str:
+    """What of a valid domain cannot be told apart where its curves are cut, and what to do."""
+    if kind == "duplicate_points":
+        sides = [int((outline.segments == point).any(axis=1).argmax()) for point in (i, j)]
+    else:
+        sides = [i, j]
+    a, b = (segment_text(domain, int(outline.segment_owners[k])) for k in sides)
+    return (
+        f"{a} and {b} come so near each other at ({x:.17g}, {y:.17g}) that vertices on them "
+        "cannot be told apart (coordinates are rounded): move them apart, make them one, or move "
+        "the origin near them"
+    )
 
 
 def segment_text(domain: Domain, i: int) -> str:

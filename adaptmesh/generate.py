@@ -13,6 +13,8 @@ from . import _core
 from .boundary import Outline, cut_outline
 from .budget import Budget, Progress
 from .domain import Domain
+from .domain_faults import too_near_text
+from .errors import DomainError
 from .mesh import Mesh
 from .optimisation import Optimisation, Settling, optimise, settle
 from .placement import (
@@ -101,29 +103,33 @@ def triangulate_outline(domain: Domain, outline: Outline) -> _core.Mesher:
     """The constrained triangulation of the outline's points, then of its cuts: metric Delaunay.
 
     A cut of a curve is off the chord that it divides, and can be hidden from it by triangles that
-    lie between. A span with such a cut is triangulated with all its cuts in another attempt.
+    lie between; any cut can be rounded onto or beyond what comes very near. `Outline.mended` says
+    what is tried then.
     """
     while True:
-        mesher = _core.Mesher(
-            outline.points,
-            outline.tensors,
-            outline.segments,
-            domain.holes,
-            domain.seeds,
-            domain.nesting,
-        )
+        try:
+            mesher = _core.Mesher(
+                outline.points,
+                outline.tensors,
+                outline.segments,
+                domain.holes,
+                domain.seeds,
+                domain.nesting,
+            )
+        except _core.Fault as fault:
+            raise DomainError(too_near_text(domain, outline, *fault.args)) from None
         mesher.swap(most_passes=OUTLINE_SWAPS)
-        complete = mesher.cut_outline(
+        made = mesher.cut_outline(
             outline.pieces,
             outline.piece_segments,
             outline.cuts,
             outline.cut_tensors,
             outline.piece,
         )
-        hidden = outline.is_span & ~complete
-        if not hidden.any():
+        mended = outline.mended(made)
+        if mended is outline:
             return mesher
-        outline = outline.divided(hidden)
+        outline = mended
 
 
 def finished_mesh(domain: Domain, mesher: _core.Mesher, regions: Ints) -> Mesh:

@@ -6,6 +6,7 @@
 4. Fill: as in `generate`, ahead of a front (which passes what it finds good) and along edges; the
    new vertices are smoothed. Edges can be too long where there was no vertex to remove: the mesh is
    filled there all the same.
+5. The mesh is checked: one that overlaps itself, or did before, is made again from its domain.
 
 Removing what is off and filling the gaps makes a better mesh than collapsing and splitting edges:
 after many steps it still has the count and the quality of a fresh one.
@@ -28,6 +29,9 @@ from .domain import Domain
 from .edge_lengths import measure_fresh_edges
 from .errors import DomainError
 from .generate import finished_mesh
+from .invariants.covering import covered_once, crossings
+from .invariants.local import positive_triangles
+from .invariants.subject import Subject
 from .lines import Lines
 from .mesh import Mesh
 from .misfits import Fit, Misfits, find_misfits
@@ -91,7 +95,7 @@ def edited(
         return None
     held = holders(mesh, lines, chains)
     mesher = load(mesh, domain, held, samples)
-    outline_fits = False
+    chains_before, outline_fits = chains, False
     for turn in range(options.turns):
         if not outline_fits:
             before = chains
@@ -111,14 +115,29 @@ def edited(
     share = measured_misfits(mesher, samples, options.fit).share
     mesher.set_constrained(chains.edges, lines.segments[chains.edge_lines])
     mesher.compact()
+    new = finished_mesh(domain, mesher, mesher.labels())
+    if not _is_plane(new, has_new_outline=chains is not chains_before):
+        return None
     report("done", 1.0)
-    return Edited(finished_mesh(domain, mesher, mesher.labels()), share)
+    return Edited(new, share)
 
 
 def measured_misfits(mesher: _core.Mesher, samples: Samples, fit: Fit) -> Misfits:
     """Measure what has changed, and find what does not fit."""
     measure_fresh_edges(mesher, samples, uncut_below=np.inf)
     return find_misfits(mesher, samples, fit)
+
+
+def _is_plane(mesh: Mesh, has_new_outline: bool) -> bool:
+    """Whether the mesh covers the plane once, where it does; exactly.
+
+    The outline is edited by what can be seen from inside. Across a slit, or in the bend of a curve,
+    its new edges can meet others, or pass over them.
+    """
+    subject = Subject(mesh)
+    if positive_triangles(subject).broken or len(crossings(subject, mesh.edges)):
+        return False
+    return not has_new_outline or not covered_once(subject).broken
 
 
 def fill(mesher: _core.Mesher, samples: Samples, budget: Budget, report: Progress) -> None:

@@ -127,6 +127,13 @@ class Carver {
         }
     }
 
+    // What is not of the domain, ghosts included.
+    Triangulation outside() const {
+        Triangulation out = mesh_;
+        out.keep_triangles([this](const Triangle& t) { return is_removed_[t.label]; });
+        return out;
+    }
+
     // Leaves only the domain: no ghosts, NONE beyond the border, regions as labels; and only the
     // sub-edges that bound it or are inside.
     void compact() {
@@ -220,10 +227,10 @@ class Carver {
 // as `constrain` returned them; those outside are dropped, and is_boundary is set in the others.
 // Labels become 1 + the number of the region seed, 0 where there is none. Vertex numbers stay; a
 // vertex of no triangle has triangle_at NONE. Where two parts of the domain meet in one vertex
-// only, `ball` of that vertex sees one of them.
+// only, `ball` of that vertex sees one of them. `outside` gets what is removed, if it is given.
 template <typename Poll>
 void carve(Triangulation& mesh, const std::vector<Point>& points, std::vector<SubEdge>& sub_edges,
-           const CarveOptions& options, Poll& poll) {
+           const CarveOptions& options, Poll& poll, Triangulation* outside = nullptr) {
     detail::Carver work(mesh, points, sub_edges);
     work.find_components(poll);
     work.check_closed("open_boundary");
@@ -233,6 +240,7 @@ void carve(Triangulation& mesh, const std::vector<Point>& points, std::vector<Su
     work.number_regions(options.region_seeds);
     work.check_not_empty();
     work.check_points();
+    if (outside != nullptr) *outside = work.outside();
     work.compact();
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adaptmesh/core/constrain.hpp"
+#include "adaptmesh/core/edge_lookup.hpp"
 #include "adaptmesh/core/triangulation.hpp"
 
 namespace adaptmesh {
@@ -61,10 +62,12 @@ inline Triangulation load(Index n_vertices, const std::vector<std::array<Index, 
         }
         topology.link(triangle_of(s.code), slot_of(s.code), t.code);
     }
-    for (const Segment& e : locked) {
-        const Place one = topology.find_edge(e.a, e.b), other = topology.find_edge(e.b, e.a);
-        if (one.triangle != NONE) topology.lock(one);
-        if (other.triangle != NONE) topology.lock(other);
+    const EdgeLookup lookup(locked);
+    std::vector<char> is_end(n_vertices, false);
+    for (const Segment& e : locked) is_end[e.a] = is_end[e.b] = true;
+    for (const EdgeSide& s : sides) {
+        if (is_end[s.low] && is_end[s.high] && lookup.find(s.low, s.high) != NONE)
+            topology.lock({triangle_of(s.code), slot_of(s.code)});
     }
     return topology;
 }

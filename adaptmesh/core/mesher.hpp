@@ -29,9 +29,12 @@ class Mesher {
         const CarveOptions options{to_points(holes), to_points(seeds), nesting};
 
         nb::gil_scoped_release release;
-        mesh_.topology = triangulate(at, lines, options, poll_).triangulation;
+        Triangulation outside;
+        mesh_.topology = triangulate(at, lines, options, poll_, &outside).triangulation;
+        outside_ = Outside(std::move(outside), at);
         for (std::size_t i = 0; i < n; ++i)
             mesh_.vertices.push_back(Vertex::make(at[i], tensor_in(tensors, i), FIXED));
+        mesh_.take_fans_apart();
     }
 
     // A mesh that is already there: the label of each triangle, its constrained edges, and what
@@ -54,11 +57,12 @@ class Mesher {
             mesh_.vertices.push_back(
                 Vertex::make({points(i, 0), points(i, 1)}, tensor_in(tensors, i), held_by(i)));
         }
+        mesh_.take_fans_apart();
     }
 
     // Cuts the constrained edges with these ends, pieces of these segments; of each cut, `piece`
-    // tells on which it lies; the cuts of a piece are in order from its first end. Returns of each
-    // piece whether all its cuts could be made.
+    // tells on which it lies; they are in the order of the pieces, and on each from its first end.
+    // Returns of each cut whether it could be made.
     nb::object cut_outline(const IndexPairs& ends, const Indices& segments, const Points& cuts,
                            const Tensors& tensors, const Indices& piece) {
         expect_rows(segments.shape(0), ends.shape(0), "segments");
@@ -66,18 +70,20 @@ class Mesher {
         expect_rows(piece.shape(0), cuts.shape(0), "piece");
         std::vector<Piece> pieces(ends.shape(0));
         for (std::size_t i = 0; i < pieces.size(); ++i)
-            pieces[i] = {ends(i, 0), ends(i, 1), segments(i), {}};
+            pieces[i] = {ends(i, 0), ends(i, 1), segments(i), 0, {}};
         for (std::size_t i = 0; i < cuts.shape(0); ++i) {
             Piece& p = pieces[piece(i)];
+            if (p.cuts.empty()) p.first_cut = i;
             p.cuts.push_back(
                 Vertex::make({cuts(i, 0), cuts(i, 1)}, tensor_in(tensors, i), p.segment));
         }
-        OutlineCutter cutter(mesh_);
+        OutlineCutter cutter(mesh_, outside_);
         {
             nb::gil_scoped_release release;
             constrained_ = cutter.cut(pieces, poll_);
+            outside_ = Outside();
         }
-        return to_numpy(std::move(cutter.is_complete), {pieces.size()}).attr("view")("bool");
+        return to_numpy(std::move(cutter.is_made), {cuts.shape(0)}).attr("view")("bool");
     }
 
     // Cuts stretches of the outline anew: stretch s has the stops from first_stop[s] on, its ends
@@ -328,6 +334,7 @@ class Mesher {
 
   private:
     MetricMesh mesh_;
+    Outside outside_;  // until the outline has been cut
     std::vector<SubEdge> constrained_;
     SignalPoll poll_;
 };

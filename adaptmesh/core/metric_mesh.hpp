@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "adaptmesh/core/corrections.hpp"
+#include "adaptmesh/core/fans.hpp"
 #include "adaptmesh/core/point.hpp"
 #include "adaptmesh/core/predicates.hpp"
 #include "adaptmesh/core/triangulation.hpp"
@@ -61,6 +63,17 @@ class MetricMesh {
     std::vector<Vertex> vertices;
     Corrections corrections;
     std::vector<Index> stale;  // vertices whose metric is interpolated and wants to be evaluated
+    Fans fans;
+
+    // Gives each part of the mesh its own vertex where parts touch in one; `compact` undoes it.
+    void take_fans_apart() {
+        fans = Fans(topology);
+        vertices.resize(topology.vertex_count());
+        for (const Fans::Copy& c : fans.copies()) vertices[c.vertex] = vertices[c.original];
+    }
+
+    // The edge from a to b, or that between copies of them, as an edge of the triangle on its left.
+    Place find_edge(Index a, Index b) const { return fans.find_edge(topology, a, b); }
 
     Index add_vertex(const Vertex& vertex) {
         vertices.push_back(vertex);
@@ -114,17 +127,29 @@ class MetricMesh {
         topology.keep_triangles([](const Triangle& t) { return t.v[0] != DEAD; });
     }
 
-    // Drops dead triangles and the vertices that are left without any; returns the new number of
-    // each vertex, NONE for the dropped.
+    // Drops dead triangles and the vertices that are left without any, and makes copies one with
+    // their originals; returns the new number of each vertex, NONE for the dropped.
     std::vector<Index> compact() {
         drop_dead_triangles();
+        std::vector<Index> original(vertices.size());
+        std::iota(original.begin(), original.end(), 0);
+        for (const Fans::Copy& c : fans.copies()) {
+            original[c.vertex] = c.original;
+            if (topology.triangle_at(c.original) == NONE)
+                topology.set_triangle_at(c.original, topology.triangle_at(c.vertex));
+        }
         std::vector<Index> name(vertices.size(), NONE);
         Index kept = 0;
         for (Index v = 0; v < Index(vertices.size()); ++v) {
             if (topology.triangle_at(v) == NONE) continue;
+            if (original[v] != v) {  // a copy, which comes after its original
+                name[v] = name[original[v]];
+                continue;
+            }
             vertices[kept] = vertices[v];
             name[v] = kept++;
         }
+        fans = Fans();
         vertices.resize(kept);
         topology.drop_vertices(name, kept);
         return name;

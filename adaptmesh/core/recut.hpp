@@ -49,8 +49,8 @@ class Recutter {
                                             [](double p, const Stop& s) { return p < s.place; });
         if (after == stretch.begin() || after == stretch.end()) return false;
         const Index a = (after - 1)->vertex, b = after->vertex;
-        Place edge = mesh_.topology.find_edge(a, b);
-        if (edge.triangle == NONE) edge = mesh_.topology.find_edge(b, a);
+        Place edge = mesh_.find_edge(a, b);
+        if (edge.triangle == NONE) edge = mesh_.find_edge(b, a);
         if (edge.triangle == NONE || !mesh_.stays_positive(edge, cut.at)) return false;
         const Index across = mesh_.triangle(edge.triangle).n[edge.slot];
         if (across != NONE && !mesh_.stays_positive({triangle_of(across), slot_of(across)}, cut.at))

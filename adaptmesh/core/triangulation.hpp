@@ -308,6 +308,21 @@ class Triangulation {
         return {NONE, 0};
     }
 
+    // Gives the fan of triangles that begins at the border with this one, at the vertex in this
+    // slot and counter-clockwise, a vertex of its own for the one it has; returns its number.
+    Index move_fan(Place first) {
+        const Index old = triangles[first.triangle].v[first.slot], copy = add_vertex();
+        for (Place at = first;;) {
+            Triangle& T = triangles[at.triangle];
+            T.v[at.slot] = copy;
+            set_triangle_at(copy, at.triangle);
+            const Index code = T.n[next(at.slot)];
+            if (code == NONE) return copy;
+            at.triangle = triangle_of(code);
+            at.slot = triangles[at.triangle].slot_of_vertex(old);
+        }
+    }
+
     // Gives vertex v the number name[v]; `name` is a permutation. The ghost keeps its own.
     void rename_vertices(const std::vector<Index>& name) {
         for (Triangle& t : triangles) {

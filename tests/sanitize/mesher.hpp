@@ -70,13 +70,14 @@ class MovedMetric {
 
 class MesherRun {
   public:
-    MesherRun(const ConstrainedTriangulation& outline, const std::vector<Point>& points,
-              const MovedMetric& metric)
+    MesherRun(const ConstrainedTriangulation& outline, const Triangulation& outside,
+              const std::vector<Point>& points, const MovedMetric& metric)
         : metric_(metric) {
         mesh.topology = outline.triangulation;
         for (Point p : points) mesh.vertices.push_back(Vertex::make(p, metric_(p), FIXED));
+        mesh.take_fans_apart();
         swap(200);
-        cut_outline(outline.sub_edges);
+        cut_outline(outline.sub_edges, Outside(outside, points));
     }
 
     MetricMesh mesh;
@@ -143,7 +144,7 @@ class MesherRun {
         return edges;
     }
 
-    void cut_outline(const std::vector<SubEdge>& sub_edges) {
+    void cut_outline(const std::vector<SubEdge>& sub_edges, Outside outside) {
         EdgeSampler sampler(0.125, INFINITY, 0);
         for (const SubEdge& e : sub_edges) {
             const Vertex &a = mesh.vertices[e.a], &b = mesh.vertices[e.b];
@@ -151,15 +152,17 @@ class MesherRun {
         }
         measure(sampler);
         std::vector<Piece> pieces;
+        std::size_t n_cuts = 0;
         for (std::size_t i = 0; i < sub_edges.size(); ++i) {
             const SubEdge& e = sub_edges[i];
-            pieces.push_back({e.a, e.b, e.segment, {}});
+            pieces.push_back({e.a, e.b, e.segment, n_cuts, {}});
             std::vector<FieldPoint> cuts;
             sampler.cut(Index(i), Index(unit_parts(sampler.lengths()[i])), cuts);
             for (const FieldPoint& p : cuts)
                 pieces.back().cuts.push_back(Vertex::make(p.at, metric_(p.at), e.segment));
+            n_cuts += cuts.size();
         }
-        constrained = OutlineCutter(mesh).cut(pieces, poll_);
+        constrained = OutlineCutter(mesh, outside).cut(pieces, poll_);
     }
 
     void refresh() {

@@ -174,14 +174,15 @@ void run_triangulate(const Input& input) {
 void run_mesher(const Input& input) {
     static std::size_t turn = 0;
     NoPoll poll;
+    Triangulation outside;
     const ConstrainedTriangulation outline =
-        triangulate(input.points, input.segments, input.options, poll);
+        triangulate(input.points, input.segments, input.options, poll, &outside);
     const auto& all = sanitize::metrics_of_unit_square();
     const sanitize::MovedMetric metric(all[++turn % all.size()], input.points);
     if (!metric.is_defined()) return;
 
     for (bool ahead_of_front : {true, false}) {
-        sanitize::MesherRun run(outline, input.points, metric);
+        sanitize::MesherRun run(outline, outside, input.points, metric);
         if (ahead_of_front) run.fill_ahead_of_front();
         run.fill_along_edges();
         run.improve();
@@ -314,6 +315,16 @@ std::vector<Input> zoo() {
     for (int k = 0; k < 100; ++k) comb.points.push_back({double(k), k % 2 == 0 ? 0.01 : -0.01});
     add_ring(comb, circle(12, 300));
     out.push_back(comb);
+    Input slit{"slit an ulp wide", {}, {}, {}};
+    add_ring(slit, {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {0, 0.2 + 9e-16}, {1, 0.9234}, {0, 0.2}});
+    out.push_back(slit);
+    Input touching{"squares that touch", {}, {}, {{}, {}, true}};
+    touching.points = grid(4, 4, 1);
+    for (Index k : {0, 2, 5, 8, 10}) {
+        for (auto [i, j] : {std::pair{0, 1}, {1, 5}, {5, 4}, {4, 0}})
+            touching.segments.push_back({k + i, k + j});
+    }
+    out.push_back(touching);
     for (unsigned seed = 0; seed < 300; ++seed) out.push_back(random_segments(seed));
     return out;
 }
