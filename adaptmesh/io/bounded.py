@@ -47,10 +47,12 @@ class Allowance:
     ----------
     size : int
         Bytes of the file, or of the files that belong together.
+    least : int, optional
+        What a small file may take.
     """
 
-    def __init__(self, size: int) -> None:
-        self._total = max(UNPACKED_BYTES, UNPACKED_TIMES * size)
+    def __init__(self, size: int, least: int = UNPACKED_BYTES) -> None:
+        self._total = max(least, UNPACKED_TIMES * size)
         self._left = self._total
 
     def take(self, count: int, itemsize: int = 1) -> None:
@@ -60,9 +62,9 @@ class Allowance:
         self._left -= count * itemsize
         if self._left < 0:
             raise FormatError(
-                f"its arrays would take more than {self._total >> 20} MiB, {UNPACKED_TIMES} times "
-                "the file: it is damaged, or made to fill the memory. If it is right, save it "
-                "uncompressed"
+                f"its arrays would take more than {self._total >> 20} MiB, and {UNPACKED_TIMES} "
+                "times the file: it is damaged, or made to fill the memory. If it is right, save "
+                "it uncompressed"
             )
 
 
@@ -220,3 +222,13 @@ def inflated(data: bytes, length: int, how: str = "zlib") -> bytes:
     if len(out) != length or not machine.eof:
         raise FormatError("a compressed block has the wrong size: the file is damaged")
     return out
+
+
+def refuse_longer(data: bytes, most: int) -> None:
+    """Raise for a block compressed by zlib that has more bytes than it may."""
+    try:
+        out = zlib.decompressobj().decompress(data, most + 1)
+    except zlib.error as error:
+        raise FormatError(f"a compressed block is damaged: {error}") from None
+    if len(out) > most:
+        raise FormatError("a compressed block is larger than it should be: the file is damaged")

@@ -27,7 +27,8 @@ import numpy as np
 from ..errors import FormatError
 from .bounded import read_json, read_xml
 from .content import Array, Content, check_vertices, refuse_cells
-from .xdmf_arrays import XdmfArrays, import_h5py
+from .hdf5 import import_h5py
+from .xdmf_arrays import XdmfArrays
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -216,7 +217,7 @@ class _Grid:
                 self._check(name, values, len(kinds), "cells")
                 self.triangle_fields[name] = values[is_triangle]
                 if _is_integer(values):
-                    self.tags = values
+                    self.tags = values[is_triangle if is_triangle.any() else is_edge]
 
     def _check(self, name: str, values: Array, count: int, what: str) -> None:
         if values.ndim not in (1, 2) or len(values) != count:
@@ -283,6 +284,8 @@ def _unmixed(numbers: Array) -> tuple[Array, Array]:
 def _take_tags(content: Content, grid: _Grid) -> None:
     """Regions or edges with tags from a grid that has them; cells are told by their vertices."""
     if grid.tags is None:
+        if grid.name in (_CELLS, _FACETS):
+            raise FormatError(f"grid {grid.name!r} has no tags: is the file complete?")
         return
     if len(grid.triangles):
         check_vertices("triangle", grid.triangles, len(content.points))

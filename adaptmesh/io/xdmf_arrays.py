@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import io
-from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+import math
+from pathlib import Path, PureWindowsPath
+from typing import TYPE_CHECKING
 
 from ..errors import FormatError
+from .bounded import whole_number
 from .content import Array
 from .files import read_bytes
-from .located import refusing
+from .hdf5 import Hdf5File
+from .located import located
+from .records import TextCursor
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
-
-_LARGEST = 1 << 31  # entries of an array: a damaged header asks for no more memory than that
 
 
 class XdmfArrays:
@@ -24,7 +23,7 @@ class XdmfArrays:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._files: dict[str, Any] = {}
+        self._files: dict[str, Hdf5File] = {}
 
     def __enter__(self) -> XdmfArrays:
         return self
@@ -47,39 +46,25 @@ class XdmfArrays:
 
     def _stored(self, where: str, reference: str) -> Array:
         name, _, path = reference.strip().rpartition(":")
-        if not name or len(PurePosixPath(name).parts) != 1:
+        if not _is_file_name(name):
             raise FormatError(f"{where} refers to {reference.strip()!r}, not to a file beside it")
-        file = self._file(name)
-        with refusing(f"{where} refers to {path!r}, which cannot be read from {name}"):
-            found = file.get(path)
-            if found is None or not hasattr(found, "shape"):
-                raise FormatError(f"{where} refers to {path!r}, which {name} does not have")
-            if found.size > _LARGEST:
-                raise FormatError(f"{where} has {found.size:.3g} entries: {name} is damaged")
-            values: Array = np.asarray(found[()])
-        return values
-
-    def _file(self, name: str) -> Any:
         if name not in self._files:
-            data, h5py = io.BytesIO(read_bytes(self._folder / name)), import_h5py()
-            with refusing(f"{name} beside it is damaged, or no HDF5 file"):
-                self._files[name] = h5py.File(data, "r")
-        return self._files[name]
+            self._files[name] = Hdf5File(read_bytes(self._folder / name), name)
+        with located(where):
+            return self._files[name].read(path)
+
+
+def _is_file_name(name: str) -> bool:
+    """Whether it is the name of a file alone, on any system."""
+    return name not in ("", ".", "..") and PureWindowsPath(name).name == name
 
 
 def _inline(where: str, item: Element) -> Array:
-    try:
-        shape = tuple(map(int, item.get("Dimensions", "").split()))
+    with located(where):
         number = item.get("NumberType", "Float").lower()
-        dtype = np.int64 if number in ("int", "uint", "short", "char", "uchar") else np.float64
-        return np.array((item.text or "").split(), dtype).reshape(shape)
-    except (ValueError, OverflowError) as error:
-        raise FormatError(f"{where}: its numbers do not fit its dimensions: {error}") from None
-
-
-def import_h5py() -> Any:
-    try:
-        import h5py
-    except ImportError:
-        raise FormatError("XDMF keeps its arrays in HDF5: pip install h5py") from None
-    return h5py
+        code = "i8" if number in ("int", "uint", "short", "char", "uchar") else "f8"
+        shape = [whole_number(n, "a dimension") for n in item.get("Dimensions", "").split()]
+        values = TextCursor((item.text or "").encode()).rest(code)
+        if len(values) != math.prod(shape):
+            raise FormatError(f"{len(values)} numbers do not fit the dimensions {tuple(shape)}")
+        return values.reshape(shape)

@@ -272,3 +272,149 @@ OFFSETS = "CELLS {} 3\nOFFSETS vtktypeint64\n{}\nCONNECTIVITY int\n0 1 2\nCELL_T
 )  # fmt: skip
 def test_vtk_that_does_not_fit_together(file, text):
     refused(am.read, file("a.vtk", text))
+
+
+# ------------------------------------------------------------------------------------------ HDF5
+
+
+@pytest.fixture
+def xdmf(tmp_path):
+    """Write a mesh of two triangles whose points are whatever `fill` puts into its .h5 as G."""
+    h5py = pytest.importorskip("h5py")
+
+    def write(fill, reference="a.h5:/G", attributes=1):
+        folder = tmp_path / "folder"
+        folder.mkdir(exist_ok=True)
+        with h5py.File(folder / "a.h5", "w") as file:
+            file["T"] = np.array([[0, 1, 2], [0, 2, 3]])
+            fill(file)
+        triangles = '<DataItem Format="HDF">a.h5:/T</DataItem>'
+        points = f'<DataItem Format="HDF">{reference}</DataItem>'
+        field = f'<Attribute Name="u">{points}</Attribute>'
+        path = folder / "a.xdmf"
+        path.write_text(
+            '<Xdmf><Domain><Grid Name="m"><Topology TopologyType="Triangle">'
+            f"{triangles}</Topology><Geometry>{points}</Geometry>{field * attributes}"
+            "</Grid></Domain></Xdmf>"
+        )
+        return path
+
+    return write
+
+
+SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
+
+
+def outside(tmp_path):
+    """An HDF5 file in another folder, and one of bare numbers."""
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "secret.h5", "w") as file:
+        file["G"] = SQUARE
+    (tmp_path / "secret.bin").write_bytes(SQUARE.tobytes())
+    return tmp_path / "secret.h5", tmp_path / "secret.bin"
+
+
+def by_external_storage(file, hdf5, binary):
+    file.create_dataset("G", (4, 2), "f8", external=[(str(binary), 0, 64)])
+
+
+def by_external_link(file, hdf5, binary):
+    import h5py
+
+    file["G"] = h5py.ExternalLink(str(hdf5), "/G")
+
+
+def by_links_to_an_external_link(file, hdf5, binary):
+    import h5py
+
+    file["far"] = h5py.ExternalLink(str(hdf5), "/")
+    file["group/soft"] = h5py.SoftLink("/far")
+    file["G"] = h5py.SoftLink("group/soft/G")
+
+
+def by_a_virtual_dataset(file, hdf5, binary):
+    import h5py
+
+    layout = h5py.VirtualLayout((4, 2), "f8")
+    layout[:] = h5py.VirtualSource(str(hdf5), "G", (4, 2))
+    file.create_virtual_dataset("G", layout)
+
+
+@pytest.mark.parametrize(
+    "lead",
+    [by_external_storage, by_external_link, by_links_to_an_external_link, by_a_virtual_dataset],
+)
+def test_hdf5_does_not_read_another_file(lead, xdmf, tmp_path):
+    files = outside(tmp_path)
+    refused(am.read, xdmf(lambda file: lead(file, *files)), "another file")
+
+
+@pytest.mark.parametrize("name", ["../secret.h5", "..", ".", "", "{}", "C:secret.h5", "..\\x.h5"])
+def test_xdmf_names_files_beside_it_only(name, xdmf, tmp_path):
+    hdf5, _ = outside(tmp_path)
+    path = xdmf(lambda file: None, f"{name.format(hdf5)}:/G")
+    refused(am.read, path, "not to a file beside it")
+
+
+def test_links_within_the_file_are_followed(xdmf):
+    import h5py
+
+    def fill(file):
+        file["x/y/G"] = SQUARE
+        file["x/z"] = h5py.SoftLink("y")
+        file["G"] = h5py.SoftLink("/x/z/G")
+
+    assert (am.read(xdmf(fill)).points == SQUARE).all()
+
+    def loop(file):
+        file["G"] = h5py.SoftLink("/H")
+        file["H"] = h5py.SoftLink("/G")
+
+    refused(am.read, xdmf(loop))
+
+
+def overfull(file, **options):
+    """A block that has more zeros than the array needs: what HDF5 unpacks is without bound."""
+    G = file.create_dataset("G", (4, 2), "f8", chunks=(4, 2), compression="gzip", **options)
+    G.id.write_direct_chunk((0, 0), zlib.compress(bytes(200 << 20)))
+
+
+@pytest.mark.parametrize(
+    ("fill", "why"),
+    [
+        (lambda file: file.create_dataset("G", (1 << 40, 2), "f8", chunks=(4, 2)), "64 MiB"),
+        (lambda file: file.create_dataset("G", (10_000_000, 2), "f8", chunks=True), "64 MiB"),
+        (lambda file: file.create_dataset("G", data=np.zeros((5 << 20, 2)), compression=9), "MiB"),
+        (overfull, "larger than it should be"),
+        (lambda file: overfull(file, shuffle=True, fletcher32=True), "larger than it should be"),
+        (lambda file: file.create_dataset("G", data=["x" * 100]), "not numbers"),
+        (lambda file: file.create_group("G"), "does not have"),
+        (lambda file: file.create_dataset("G", data=[1.0], dtype="f8").resize, "shape"),
+    ],
+)
+def test_hdf5_that_grows(fill, why, xdmf):
+    refused(am.read, xdmf(fill), why)
+
+
+def test_one_array_used_again_and_again(xdmf):
+    path = xdmf(lambda file: file.create_dataset("G", data=np.zeros((100_000, 2))), attributes=2000)
+    refused(am.read, path, "MiB")
+
+
+@pytest.mark.parametrize(
+    "options", [{"compression": 4}, {"compression": "lzf"}, {"chunks": (3, 1)}]
+)
+@pytest.mark.parametrize("more", [{}, {"shuffle": True}, {"fletcher32": True}])
+def test_compressed_hdf5_is_read(options, more, xdmf):
+    path = xdmf(lambda file: file.create_dataset("G", data=SQUARE, **options, **more))
+    assert (am.read(path).points == SQUARE).all()
+
+
+@pytest.mark.parametrize(
+    ("dimensions", "numbers"),
+    [("4 2", "0 " * 7), ("-1 2", "0 " * 8), (LONG, "0"), ("4 2", "0 " * 7 + "x" * 100_000)],
+)
+def test_xdmf_of_wrong_dimensions(dimensions, numbers, file):
+    item = f'<DataItem Format="XML" Dimensions="{dimensions}">{numbers}</DataItem>'
+    grid = f'<Grid Name="m"><Geometry>{item}</Geometry></Grid>'
+    refused(am.read, file("a.xdmf", f"<Xdmf><Domain>{grid}</Domain></Xdmf>"), "Geometry")
