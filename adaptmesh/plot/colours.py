@@ -27,6 +27,7 @@ LONG = ("#f0995b", "#d1492e", "#7a1010")
 QUALITY = ("#6d0f1a", "#b5352f", "#e27d4e", "#f3c27f", "#e8e6c8", "#bcd5d3", "#86b3c4")
 SIZES = ("#123a5e", "#1f6b8a", "#4ba3a3", "#a5cfa4", "#eceac2")
 FIELD = "viridis"
+NO_VALUE = "#b3b3b3"  # NaN; on none of the scales
 
 REGIONS = (
     "#cfe0ee", "#f6dcc0", "#d4e8cf", "#e9d3e6", "#f5edbb", "#cfe8e6",
@@ -55,6 +56,8 @@ def ramp(colours: Sequence[str], steps: int = 256) -> Bytes:
 @dataclass(frozen=True)
 class Scale:
     """Numbers to colours; what is outside [low, high] takes the colour of the end.
+
+    NaN has a colour of its own, `NO_VALUE`.
 
     Attributes
     ----------
@@ -89,6 +92,7 @@ class Scale:
         """The colours of values, (n, 3)."""
         steps = len(self.table)
         out: Bytes = self.table[np.minimum(self.share(values) * steps, steps - 1).astype(int)]
+        out[np.isnan(values)] = rgb(NO_VALUE)
         return out
 
 

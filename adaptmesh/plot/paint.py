@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +19,7 @@ from .colours import (
     FIELD,
     INK,
     NAMES,
+    NO_VALUE,
     PAPER,
     REGIONS,
     Bytes,
@@ -81,6 +83,8 @@ class Paint:
     scale : Scale, optional
     entries : sequence of (name, colour)
         For the legend.
+    heading : str
+        Of the legend.
     """
 
     faces: Bytes
@@ -89,6 +93,7 @@ class Paint:
     edge_strength: float = 0.4
     scale: Scale | None = None
     entries: Sequence[Entry] = ()
+    heading: str = "regions"
 
 
 def paint_plain(view: View) -> Paint:
@@ -133,14 +138,23 @@ def paint_sizes(view: View, cmap: str | None) -> Paint:
 
 
 def paint_values(view: View, values: ArrayLike, cmap: str | None) -> Paint:
-    """Numbers at the points of the mesh or on its triangles."""
-    mesh, v = view.mesh, np.asarray(values, float)
+    """Numbers at the points of the mesh or on its triangles; NaN, or masked, is no value."""
+    mesh, v = view.mesh, _as_reals(values)
     n, m = len(mesh.points), len(mesh.triangles)
     if v.shape not in ((n,), (m,)):
         raise ValueError(f"show has shape {v.shape}: {n} numbers at the points are wanted, or {m}")
     scale = field_scale(v, cmap or FIELD)
     faces = scale(v) if v.shape == (n,) else scale(v[view.numbers])
-    return Paint(faces, _all(EDGE, view.edges), edge_strength=0.3, scale=scale)
+    missing = [("no value", NO_VALUE)] if np.isnan(v).any() else []
+    edges = _all(EDGE, view.edges)
+    return Paint(faces, edges, edge_strength=0.3, scale=scale, entries=missing, heading="missing")
+
+
+def _as_reals(values: ArrayLike) -> Floats:
+    array: NDArray[Any] = np.asarray(values)
+    if array.dtype.kind not in "biuf":
+        raise ValueError(f"show is an array of {array.dtype}: expected real numbers")
+    return np.where(np.ma.getmaskarray(np.ma.asarray(values)), np.nan, array.astype(float))
 
 
 def paint_names(view: View) -> tuple[Bytes, list[Entry]]:

@@ -66,7 +66,7 @@ def plot(
         What the colours mean: nothing; the region of each triangle; its quality from 0 to 1; the
         metric length of each edge, on a logarithmic scale that sets unit edges apart; the side of
         the equilateral triangle of the same area. Or numbers (n,) at the points or (m,) on the
-        triangles.
+        triangles; NaN and masked ones are grey, and the legend says so.
     ellipses : bool or int, optional
         Draw the metric as ellipses of its unit vectors over the mesh, so many at most. Where they
         would be too small to see they are all enlarged, and the legend says by how much.
@@ -199,7 +199,7 @@ def _draw_key(pen: Pen, paint: Paint, names: list[Entry], chosen: Ellipses | Non
     if paint.scale is not None:
         y = draw_scale(pen, paint.scale, y, min(300 * frame.unit, 0.6 * y))
     if paint.entries:
-        y = draw_legend(pen, "regions", paint.entries, y, 18)
+        y = draw_legend(pen, paint.heading, paint.entries, y, 18)
     if names:
         y = draw_legend(pen, "lines", names, y, 4)
     if chosen is not None:

@@ -141,6 +141,28 @@ def test_sizes_and_values(draw):
         assert has(image, "#" + bytes(table[-3]).hex(), 20) > 100
 
 
+@pytest.mark.parametrize("hole", ["nan", "masked"])
+@pytest.mark.parametrize("at", ["points", "triangles"])
+def test_no_value_has_a_colour_of_its_own_and_changes_no_other(draw, hole, at):
+    x = MESH.points[:, 0] if at == "points" else MESH.points[MESH.triangles].mean(axis=1)[:, 0]
+    missing = (x > 0.3) & (x < 0.7)
+    values = np.where(missing, np.nan if hole == "nan" else -1e38, x)
+    if hole == "masked":
+        values = np.ma.array(values, mask=missing)
+    without, image = draw(MESH, show=x, edges=False), draw(MESH, show=values, edges=False)
+    grey = colours.NO_VALUE
+    assert has(without, grey, 3) == 0 and has(image, grey, 3) > 500
+    table = colours.named(colours.FIELD)
+    for end in ("#" + bytes(table[3]).hex(), "#" + bytes(table[-3]).hex()):
+        assert has(image, end, 20) == pytest.approx(has(without, end, 20), rel=0.1)
+
+
+def test_infinite_values_have_the_colours_of_the_ends():
+    scale = colours.field_scale(np.array([0.0, 1.0]), None)
+    ends = scale(np.array([-np.inf, np.inf, 0.0, 1.0, np.nan]))
+    assert (ends[:2] == ends[2:4]).all() and (ends[4] == colours.rgb(colours.NO_VALUE)).all()
+
+
 def test_ellipses(draw):
     def purple(image):
         red, green, blue = np.moveaxis(image.astype(int), 2, 0)
@@ -239,6 +261,8 @@ def test_other_formats(can_draw, tmp_path, suffix, magic):
         ({"show": "length"}, "which metric"),
         ({"ellipses": True}, "which metric"),
         ({"show": np.zeros(5)}, "shape"),
+        ({"show": np.zeros(len(MESH.points), complex)}, "expected real numbers"),
+        ({"show": ["a"] * len(MESH.points)}, "expected real numbers"),
         ({"bounds": (5, 5, 6, 6)}, "in sight"),
         ({"bounds": (1, 1, 0, 0)}, "x0 < x1"),
         ({"bounds": (0, 0, 1, np.nan)}, "x0 < x1"),
