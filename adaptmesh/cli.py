@@ -1,7 +1,8 @@
 """The command line: ``adaptmesh generate | adapt | check | repair | plot | convert | demo``.
 
 Commands are thin: each reads, calls the one library function of its name, and says what came of
-it. Heavy modules are imported inside the commands, so that ``--help`` comes at once.
+it. Heavy modules are imported inside the commands, so that ``--help`` comes at once. What the
+options say is checked before any work.
 
 Results are printed to standard output; progress, warnings and errors go to standard error.
 Exit codes: 0 done, 1 bad mesh, domain, metric or file, 2 wrong usage, 130 interrupted.
@@ -10,18 +11,20 @@ Exit codes: 0 done, 1 bad mesh, domain, metric or file, 2 wrong usage, 130 inter
 from __future__ import annotations
 
 import time
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from .cli_arguments import (
+    Bounds,
+    Json,
     MaxVertices,
     MeshFile,
     Metric,
+    MetricField,
     OutlineFile,
     Output,
     Picture,
@@ -29,9 +32,11 @@ from .cli_arguments import (
     Quiet,
     Show,
     Size,
+    Title,
     Tolerance,
 )
-from .errors import AdaptmeshError, FormatError
+from .cli_metric import Request
+from .cli_output import EXIT_BAD, Speaker, neat_errors, show_warnings_neatly, write
 
 if TYPE_CHECKING:
     from metrics import ControlSpace
@@ -39,13 +44,9 @@ if TYPE_CHECKING:
     from .domain import Domain
     from .mesh import Mesh
 
-EXIT_BAD = 1
-EXIT_INTERRUPTED = 130
-
 app = typer.Typer(
     name="adaptmesh",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -55,8 +56,8 @@ app = typer.Typer(
 )
 
 
-def _print_version(wanted: bool) -> None:
-    if wanted:
+def _print_version(is_asked: bool) -> None:
+    if is_asked:
         from importlib.metadata import version
 
         typer.echo(f"adaptmesh {version('adaptmesh-metric')}")
@@ -83,6 +84,7 @@ def generate(
     output: Output,
     size: Size = None,
     metric: Metric = None,
+    metric_field: MetricField = None,
     plot: Picture = None,
     max_vertices: MaxVertices = None,
     placement: Placement = None,
@@ -90,20 +92,40 @@ def generate(
         bool, typer.Option("--repair", help="Repair the domain first, and say what was done.")
     ] = False,
     tolerance: Tolerance = None,
+    simplify: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            metavar="SHARE",
+            help="Leave out detail of the outline smaller than this share of the size, e.g. 0.1.",
+        ),
+    ] = None,
     quiet: Quiet = False,
+    as_json: Json = False,
 ) -> None:
     """Mesh a domain: polygons, curves, a drawing, or the domain of another mesh."""
-    with _neat_errors():
+    with neat_errors():
         import adaptmesh as am
 
+        speaker = Speaker(quiet, as_json)
         _check_outputs(output, plot)
-        outline, carrier = _outline_and_mesh(domain, repair, tolerance, quiet)
-        control = _control_space(size, metric, carrier)
-        if not quiet:
-            typer.echo(f"predicted: about {round(am.predict(outline, control)):,} vertices")
-        with _meshing(quiet, max_vertices, placement) as options:
+        if tolerance is not None and not repair:
+            raise typer.BadParameter("--tolerance is that of --repair")
+        request = Request(size, metric, metric_field)
+        request.refuse_empty()
+        if repair or _is_outline(domain):
+            request.refuse_without_mesh()
+        outline, carrier = _outline_and_mesh(domain, repair, tolerance, speaker)
+        control = request.control_space(carrier)
+        if simplify is not None:
+            outline, dropped = am.simplify(outline, control, share=simplify)
+            speaker.say(dropped)
+        predicted = am.predict(outline, control)
+        speaker.say(f"predicted: about {round(predicted):,} vertices")
+        speaker.note(predicted_vertices=predicted)
+        with _meshing(speaker, max_vertices, placement) as options:
             mesh = am.generate(outline, control, **options)
-        _deliver(mesh, control, output, plot, quiet)
+        _deliver(mesh, control, output, plot, speaker)
 
 
 @app.command(epilog="Example: adaptmesh adapt old.mesh --metric old.sol -o new.mesh")
@@ -112,34 +134,58 @@ def adapt(
     output: Output,
     size: Size = None,
     metric: Metric = None,
+    metric_field: MetricField = None,
     plot: Picture = None,
     max_vertices: MaxVertices = None,
     placement: Placement = None,
+    keep: Annotated[
+        bool, typer.Option("--keep", help="Edit the mesh where it does not fit, keep the rest.")
+    ] = False,
     quiet: Quiet = False,
+    as_json: Json = False,
 ) -> None:
     """Adapt a mesh to a metric, keeping its boundaries, regions and names."""
-    with _neat_errors():
+    with neat_errors():
         import adaptmesh as am
 
+        speaker = Speaker(quiet, as_json)
         _check_outputs(output, plot)
+        if keep and placement is not None:
+            raise typer.BadParameter("--placement is that of a new mesh: leave it out, or --keep")
+        request = Request(size, metric, metric_field)
+        request.refuse_empty()
         old = am.read(mesh)
-        control = _control_space(size, metric, old)
-        with _meshing(quiet, max_vertices, placement) as options:
-            new = am.adapt(old, control, **options)
-        _deliver(new, control, output, plot, quiet)
+        control = request.control_space(old)
+        with _meshing(speaker, max_vertices, placement) as options:
+            new = am.adapt(old, control, keep=keep, **options)
+        if new.kept is not None:
+            speaker.note(kept_vertices=int((new.kept >= 0).sum()))
+        _deliver(new, control, output, plot, speaker)
 
 
 @app.command(epilog="Example: adaptmesh check part.msh --size 0.05")
-def check(mesh: MeshFile, size: Size = None, metric: Metric = None) -> None:
+def check(
+    mesh: MeshFile,
+    size: Size = None,
+    metric: Metric = None,
+    metric_field: MetricField = None,
+    as_json: Json = False,
+) -> None:
     """Check that a mesh is valid (exit code 0, else 1), and how well it fits a metric."""
-    with _neat_errors():
+    with neat_errors():
         import adaptmesh as am
 
+        speaker = Speaker(as_json=as_json)
+        request = Request(size, metric, metric_field)
         checked = am.read(mesh)
         validity = checked.validate()
-        typer.echo(str(validity))
-        if size is not None or metric is not None:
-            typer.echo(f"\n{am.measure(checked, _control_space(size, metric, checked))}")
+        speaker.say(validity)
+        speaker.note(mesh=str(mesh), valid=validity.ok, checks=[vars(c) for c in validity.checks])
+        if not request.is_empty:
+            report = am.measure(checked, request.control_space(checked))
+            speaker.say(f"\n{report}")
+            speaker.note(report=report.as_dict())
+        speaker.finish()
         if not validity.ok:
             raise typer.Exit(EXIT_BAD)
 
@@ -150,21 +196,25 @@ def repair(
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE.geojson", dir_okay=False)],
     tolerance: Tolerance = None,
     quiet: Quiet = False,
+    as_json: Json = False,
 ) -> None:
     """Repair an outline, say what was done, and write the regions as polygons."""
-    with _neat_errors():
+    with neat_errors():
         import adaptmesh as am
 
         from .geojson import GEOJSON_SUFFIXES, write_geojson
 
+        speaker = Speaker(quiet, as_json)
         if output.suffix.lower() not in GEOJSON_SUFFIXES:
             raise typer.BadParameter(f"--output ends in {' or '.join(GEOJSON_SUFFIXES)}")
+        _check_folder(output)
         clean, repairs = am.repair(domain, tolerance)
-        if not quiet:
-            typer.echo(f"{repairs}")
+        speaker.say(repairs)
         write_geojson(output, clean)
-        if not quiet:
-            typer.echo(f"wrote {output}: {len(clean.points):,} points")
+        speaker.say(f"wrote {output}: {len(clean.points):,} points")
+        speaker.note(output=str(output), points=len(clean.points), tolerance=repairs.tolerance)
+        speaker.note(displacement=repairs.displacement, repairs=[vars(r) for r in repairs])
+        speaker.finish()
 
 
 @app.command(
@@ -177,24 +227,44 @@ def plot(
         typer.Option("--output", "-o", metavar="PNG", dir_okay=False, help="Picture to write."),
     ],
     show: Annotated[Show, typer.Option(help="What to colour the triangles by.")] = Show.mesh,
+    field: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Colour by this field of the file, not by --show."),
+    ] = None,
     size: Size = None,
     metric: Metric = None,
+    metric_field: MetricField = None,
     ellipses: Annotated[
         bool, typer.Option("--ellipses", help="Draw the metric as unit ellipses.")
     ] = False,
+    bounds: Bounds = None,
+    title: Title = None,
 ) -> None:
-    """Draw a mesh: its triangles, quality, edge lengths, sizes or regions."""
-    with _neat_errors():
+    """Draw a mesh: its triangles, quality, edge lengths, sizes, regions, or a field."""
+    with neat_errors():
         import adaptmesh as am
 
-        wanted = size is not None or metric is not None
-        if (ellipses or show is Show.length) and not wanted:
+        request = Request(size, metric, metric_field)
+        if (ellipses or show is Show.length) and request.is_empty:
             raise typer.BadParameter("of which metric? Give --size or --metric")
+        if field is not None and show is not Show.mesh:
+            raise typer.BadParameter("give one of --show and --field")
+        if bounds is not None and not (bounds[0] < bounds[2] and bounds[1] < bounds[3]):
+            raise typer.BadParameter("--bounds X0 Y0 X1 Y1: expected X0 < X1 and Y0 < Y1")
         _check_outputs(picture=output)
         drawn = am.read(mesh)
-        control = _control_space(size, metric, drawn) if wanted else None
-        am.plot(drawn, control, show=show.value, ellipses=ellipses, path=output)
-        typer.echo(f"wrote {output}")
+        control = None if request.is_empty else request.control_space(drawn)
+        colours = show.value if field is None else _field(mesh, field)
+        am.plot(
+            drawn,
+            control,
+            show=colours,
+            ellipses=ellipses,
+            path=output,
+            bounds=bounds,
+            title=title,
+        )
+        write(f"wrote {output}")
 
 
 @app.command(epilog="Example: adaptmesh convert part.msh part.vtu")
@@ -203,13 +273,13 @@ def convert(
     target: Annotated[Path, typer.Argument(metavar="OUT", dir_okay=False, help="Mesh to write.")],
 ) -> None:
     """Write a mesh in another format, told by the suffix."""
-    with _neat_errors():
+    with neat_errors():
         import adaptmesh as am
 
         _check_outputs(target)
         mesh = am.read(source)
         am.write(target, mesh)
-        typer.echo(f"wrote {target}: {_counts(mesh)}")
+        write(f"wrote {target}: {_counts(mesh)}")
 
 
 @app.command(epilog="Example: adaptmesh demo --out pictures")
@@ -219,42 +289,17 @@ def demo(
     ] = Path("adaptmesh-demo"),
 ) -> None:
     """Mesh the coast of Iceland and the flow around an aerofoil, and draw them."""
-    with _neat_errors():
+    with neat_errors():
         from .demo import run
 
         out.mkdir(parents=True, exist_ok=True)
-        run(out, say=typer.echo)
+        run(out, say=write)
 
 
 def main() -> None:
     """Run the command line (the `adaptmesh` script)."""
-    warnings.showwarning = _show_warning
+    show_warnings_neatly()
     app(prog_name="adaptmesh")
-
-
-@contextmanager
-def _neat_errors() -> Iterator[None]:
-    """Turn what the user can mend into a message and an exit code; let our own mistakes show."""
-    try:
-        yield
-    except AdaptmeshError as error:
-        _fail(str(error))
-    except BrokenPipeError:
-        raise  # the reader of our output has left, as in `| head`; typer ends quietly
-    except OSError as error:
-        _fail(f"{error.filename or 'a file'}: {error.strerror or error}")
-    except KeyboardInterrupt:
-        typer.echo("interrupted", err=True)
-        raise typer.Exit(EXIT_INTERRUPTED) from None
-
-
-def _fail(message: str) -> NoReturn:
-    typer.echo(typer.style("error: ", fg=typer.colors.RED, bold=True) + message, err=True)
-    raise typer.Exit(EXIT_BAD) from None
-
-
-def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
-    typer.echo(typer.style("warning: ", fg=typer.colors.YELLOW, bold=True) + str(message), err=True)
 
 
 def _check_outputs(mesh: Path | None = None, picture: Path | None = None) -> None:
@@ -263,85 +308,77 @@ def _check_outputs(mesh: Path | None = None, picture: Path | None = None) -> Non
     from .plot.screen import check_path
 
     for path in (mesh, picture):
-        if path is not None and not path.parent.is_dir():
-            raise typer.BadParameter(f"there is no folder {str(path.parent)!r} for {path.name!r}")
+        if path is not None:
+            _check_folder(path)
     if mesh is not None:
         format_of(mesh)
     if picture is not None:
         check_path(picture)
 
 
+def _check_folder(path: Path) -> None:
+    if not path.parent.is_dir():
+        raise typer.BadParameter(f"there is no folder {str(path.parent)!r} for {path.name!r}")
+
+
+def _is_outline(path: Path) -> bool:
+    """Whether a file holds a domain but no mesh, by its suffix."""
+    from .domain_io import OUTLINE_SUFFIXES
+
+    return path.suffix.lower() in OUTLINE_SUFFIXES
+
+
 def _outline_and_mesh(
-    path: Path, repair: bool, tolerance: float | None, quiet: bool
+    path: Path, repair: bool, tolerance: float | None, speaker: Speaker
 ) -> tuple[Domain, Mesh | None]:
     """The domain in a file, and the mesh that it is the domain of, if the file holds one."""
     import adaptmesh as am
 
-    from .domain_io import OUTLINE_SUFFIXES
-
-    if tolerance is not None and not repair:
-        raise typer.BadParameter("--tolerance is that of --repair")
     if repair:
         domain, repairs = am.repair(path, tolerance)
-        if not quiet:
-            typer.echo(f"{repairs}")
+        speaker.say(repairs)
+        speaker.note(repairs=[vars(r) for r in repairs])
         return domain, None
-    if path.suffix.lower() in OUTLINE_SUFFIXES:
+    if _is_outline(path):
         return am.read_domain(path), None
     mesh = am.read(path)
     return mesh.domain or am.Domain.of_mesh(mesh), mesh
 
 
-def _control_space(size: str | None, metric: Path | None, mesh: Mesh | None) -> ControlSpace:
-    """What --size or --metric asks for; exactly one of them, the latter on the vertices of mesh."""
-    import metrics
-
-    if size is not None and metric is None:
-        return metrics.Expression(size)
-    if metric is None or size is not None:
-        raise typer.BadParameter("give one of --size and --metric")
-    if mesh is None:
-        raise typer.BadParameter(
-            "--metric gives values at the vertices of a mesh, and DOMAIN is an outline without "
-            "any: use --size, or give the mesh"
-        )
+def _field(path: Path, name: str) -> Any:
+    """A field of real numbers in a mesh file."""
     import adaptmesh as am
 
-    values = am.read_sol(metric)
-    if len(values) != len(mesh.points):
-        raise FormatError(
-            f"{metric} has values for {len(values)} vertices, but the mesh has "
-            f"{len(mesh.points)}: they do not belong together"
-        )
-    return metrics.Background(mesh.points, mesh.triangles, values)
+    fields = am.read_fields(path)
+    plain = [key for key, values in fields.items() if values.ndim == 1]
+    if name not in plain:
+        known = ", ".join(map(repr, plain)) or "none"
+        raise typer.BadParameter(f"--field {name}: the file has no such field; it has {known}")
+    return fields[name]
 
 
 @contextmanager
 def _meshing(
-    quiet: bool, max_vertices: int | None, placement: str | None
+    speaker: Speaker, max_vertices: int | None, placement: str | None
 ) -> Iterator[dict[str, Any]]:
     """The options of `generate` and `adapt` that were given, and a progress bar while they run."""
-    from .placement import PLACEMENTS
     from .progress import TerminalProgress
 
-    options: dict[str, Any] = {}
-    if max_vertices is not None:
-        options["max_vertices"] = max_vertices
-    if placement is not None:
-        if placement not in PLACEMENTS:
-            raise typer.BadParameter(f"--placement is one of {', '.join(PLACEMENTS)}")
-        options["placement"] = placement
-    if quiet:
-        yield options
-        return
+    given = {"max_vertices": max_vertices, "placement": placement}
+    options = {name: value for name, value in given.items() if value is not None}
     start = time.perf_counter()
-    with TerminalProgress() as progress:
-        yield {**options, "progress": progress}
-    typer.echo(f"meshed in {time.perf_counter() - start:.2f} s")
+    if speaker.is_silent:
+        yield options
+    else:
+        with TerminalProgress() as progress:
+            yield {**options, "progress": progress}
+    seconds = time.perf_counter() - start
+    speaker.say(f"meshed in {seconds:.2f} s")
+    speaker.note(seconds=seconds)
 
 
 def _deliver(
-    mesh: Mesh, control: ControlSpace, output: Path, plot: Path | None, quiet: bool
+    mesh: Mesh, control: ControlSpace, output: Path, plot: Path | None, speaker: Speaker
 ) -> None:
     """Write the mesh and its picture, and say how well it fits."""
     import adaptmesh as am
@@ -349,11 +386,17 @@ def _deliver(
     am.write(output, mesh)
     if plot is not None:
         am.plot(mesh, path=plot)
-    if not quiet:
-        typer.echo(f"{am.measure(mesh, control)}")
-        typer.echo(f"wrote {output}: {_counts(mesh)}")
-        if plot is not None:
-            typer.echo(f"wrote {plot}")
+    if speaker.is_silent and not speaker.as_json:
+        return
+    report = am.measure(mesh, control)
+    speaker.say(report)
+    speaker.say(f"wrote {output}: {_counts(mesh)}")
+    if plot is not None:
+        speaker.say(f"wrote {plot}")
+        speaker.note(plot=str(plot))
+    speaker.note(output=str(output), vertices=len(mesh.points), triangles=len(mesh.triangles))
+    speaker.note(report=report.as_dict())
+    speaker.finish()
 
 
 def _counts(mesh: Mesh) -> str:

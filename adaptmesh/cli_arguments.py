@@ -44,10 +44,18 @@ Metric = Annotated[
     typer.Option(
         "--metric",
         "-m",
-        metavar="FILE.sol",
+        metavar="FILE",
         exists=True,
         dir_okay=False,
-        help="Sizes or metric tensors at the vertices of the input mesh.",
+        help="Sizes or metric tensors: a solution (.sol) at the vertices of the input mesh; a mesh "
+        "(.vtu .msh .vtk .xdmf .mesh) that carries them; or a raster of sizes (.tif).",
+    ),
+]
+MetricField = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME",
+        help="Which field of the mesh given as --metric; 'metric', or the only one, if absent.",
     ),
 ]
 Output = Annotated[
@@ -60,14 +68,42 @@ MaxVertices = Annotated[
     int | None,
     typer.Option(min=3, metavar="N", help="Refuse, before meshing, to make more than N vertices."),
 ]
+
+
+def placements(incomplete: str = "") -> list[str]:
+    """The names of placements, for checks and for the completion of the shell."""
+    from .placement import PLACEMENTS
+
+    return [name for name in PLACEMENTS if name.startswith(incomplete)]
+
+
+def _checked_placement(name: str | None) -> str | None:
+    if name is not None and name not in placements():
+        raise typer.BadParameter(f"a placement is one of {', '.join(placements())}, not {name!r}")
+    return name
+
+
 Placement = Annotated[
     str | None,
-    typer.Option(metavar="NAME", help="How new points are placed, e.g. 'edges': along long edges."),
+    typer.Option(
+        metavar="NAME",
+        autocompletion=placements,
+        callback=_checked_placement,
+        help="How new points are placed, e.g. 'edges': along long edges.",
+    ),
 ]
 Tolerance = Annotated[
     float | None,
     typer.Option(
         min=0.0, metavar="LENGTH", help="What is nearer is made one; 1e-9 of the extent if absent."
     ),
+]
+Title = Annotated[str | None, typer.Option(metavar="TEXT", help="Heading of the picture.")]
+Bounds = Annotated[
+    tuple[float, float, float, float] | None,
+    typer.Option(metavar="X0 Y0 X1 Y1", help="Look at this part only."),
+]
+Json = Annotated[
+    bool, typer.Option("--json", help="Print one JSON object instead of text, when all is done.")
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]

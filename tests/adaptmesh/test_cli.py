@@ -239,7 +239,8 @@ def test_wrong_usage(run, square, mesh):
     assert_usage(run("generate", square, "-o", "out.vtu"), "one of --size and --metric")
     assert_usage(run("generate", square, "-s", "1"), "Missing option")
     assert_usage(run("generate", square, "-s", "1", "-o", "no/folder/out.vtu"), "no folder")
-    assert_usage(run("generate", square, "-m", mesh, "-o", "out.vtu"), "is an outline")
+    Path("old.sol").write_text("nothing")
+    assert_usage(run("generate", square, "-m", "old.sol", "-o", "out.vtu"), "is an outline")
     assert_usage(
         run("generate", square, "-s", "1", "-o", "out.vtu", "--placement", "nowhere"), "is one of"
     )
