@@ -22,7 +22,12 @@ def orient2d(a: Floats, b: Floats, c: Floats) -> NDArray[np.int8]: ...
 def incircle(a: Floats, b: Floats, c: Floats, d: Floats) -> NDArray[np.int8]: ...
 def delaunay(points: Floats) -> tuple[Ints, Ints]: ...
 def triangulate(
-    points: Floats, segments: Ints, holes: Floats, seeds: Floats, nesting: bool
+    points: Floats,
+    segments: Ints,
+    holes: Floats,
+    seeds: Floats,
+    nesting: bool,
+    certain: bool = False,
 ) -> tuple[Ints, Ints, Ints, Ints, Bools]: ...
 def encounters(
     points: Floats, segments: Ints, is_unseen: Bools, tolerance: float, most_crossings: int

@@ -22,7 +22,7 @@ from .domain import Domain
 from .errors import DomainError
 from .ownership import owners_of_faces
 from .raw import Shape
-from .rings import Rings, rings_of
+from .rings import REPEATED, Rings, rings_of
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon, Polygon
@@ -59,10 +59,11 @@ def domain_of_shapes(shapes: Sequence[Shape]) -> Domain:
         nearly but not quite coincide, ...; it names the first place.
     """
     domain, repairs = repaired_domain_of_shapes(shapes, None)
-    if repairs:
-        more = f" (and {len(repairs) - 1} more such places)" if len(repairs) > 1 else ""
+    faults = [record for record in repairs if record.kind != REPEATED]
+    if faults:
+        more = f" (and {len(faults) - 1} more such places)" if len(faults) > 1 else ""
         raise DomainError(
-            f"{repairs[0]}{more}: this is what adaptmesh.repair would do; let it (on the command "
+            f"{faults[0]}{more}: this is what adaptmesh.repair would do; let it (on the command "
             "line --repair), or mend it"
         )
     return domain

@@ -23,8 +23,8 @@ from .domain_input import (
     checked_points,
     checked_segments,
     joined_rings,
+    labelled,
     read_only,
-    rings_of,
 )
 from .errors import DomainError
 from .periodic import Motion, PeriodicPair, periodic_pair
@@ -50,9 +50,13 @@ class Domain(Value):
     segments : (k, 2) array_like of int
         Pairs of point numbers, from 0. They bound the domain, separate regions, or just lie inside
         it; they may meet only at points. A point that lies exactly on a segment divides it.
-    holes : sequence of (x, y), or "nesting"
-        A point inside each hole. ``"nesting"``: what an odd number of boundaries encloses is
-        inside, what an even number encloses is a hole; an island in a hole is inside again.
+    holes : sequence of (x, y), or "nesting", optional
+        A point inside each hole; ``[]`` if there are none. If not given, holes are found: over
+        each line, from outside inwards, the domain and holes take turns, so that a ring in the
+        domain bounds a hole, and one in a hole an island; but a part with the point of a region is
+        in the domain. Where it is uncertain whether something is a hole, as lines that divide the
+        domain end at its border (the middle one of nine squares), the domain is refused;
+        ``"nesting"`` takes it for a hole if the fewest lines from outside to it are two, or four...
     regions : mapping of str or int to (x, y), optional
         For each region, by its name or (if it has none) its number, a point inside it, or several
         points if it has several parts. A part without a point belongs to region 0.
@@ -66,6 +70,8 @@ class Domain(Value):
     ------
     DomainError
         Names the first offending point, segment or seed with its coordinates, and the remedy.
+        Points and segments that would be in no mesh, as they lie outside or in a hole and not on
+        its border, are refused, too.
 
     Examples
     --------
@@ -73,13 +79,24 @@ class Domain(Value):
     ...                 names={"inlet": [3]})
     >>> square.area
     1.0
+
+    Two rings, the inner one of which is a hole, an interface, or bounds a region:
+
+    >>> points = [(0, 0), (3, 0), (3, 3), (0, 3), (1, 1), (2, 1), (2, 2), (1, 2)]
+    >>> rings = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)]
+    >>> Domain(points, rings).area
+    8.0
+    >>> Domain(points, rings, holes=[]).area
+    9.0
+    >>> Domain(points, rings, regions={"matrix": (0.5, 0.5), "fibre": (1.5, 1.5)}).area
+    9.0
     """
 
     def __init__(
         self,
         points: ArrayLike,
         segments: ArrayLike,
-        holes: ArrayLike | str = (),
+        holes: ArrayLike | str | None = None,
         regions: ByLabel[ArrayLike] | None = None,
         names: ByLabel[Iterable[int]] | None = None,
         tags: Mapping[str, int] | None = None,
@@ -88,7 +105,7 @@ class Domain(Value):
         self.points = checked_points(points, "point")
         self.segments = checked_segments(segments, self.points)
         n = len(self.segments)
-        self.names, self.segment_tags = checked_names(names or {}, n, "segment", tags)
+        self.names, self.segment_tags = checked_names(names, n, "segment", tags)
         inside = Inside.checked(holes, regions, region_tags)
         self._build(inside, Curved.nothing(len(self.points), n))
 
@@ -100,7 +117,7 @@ class Domain(Value):
         #: Which of the points and segments lie on curves, and where.
         self.curved = curved
 
-        triangles, labels, pieces, segment, is_boundary = self._triangulate()
+        triangles, labels, pieces, segment, is_boundary = self._triangulate(inside.certain)
         #: Constrained Delaunay triangles of the points alone, (m, 3), and their regions, (m,).
         self.triangles: Ints = read_only(triangles)
         self.triangle_regions: Ints = read_only(self.region_of_label(labels))
@@ -118,7 +135,7 @@ class Domain(Value):
     def polygon(
         cls,
         outer: Any,
-        holes: Sequence[ArrayLike] = (),
+        holes: Sequence[ArrayLike] | None = None,
         *,
         names: ByLabel[Iterable[int]] | None = None,
     ) -> Domain:
@@ -128,20 +145,48 @@ class Domain(Value):
         ----------
         outer : (n, 2) array_like, or a polygon
             The outer ring, in either direction, closed or not; or a shapely ``Polygon`` or
-            ``MultiPolygon``, or anything else with a ``__geo_interface__`` of these.
-        holes : sequence of (n, 2) array_like
-            The rings of the holes; a ring inside a hole is an island.
+            ``MultiPolygon``, or anything else with a ``__geo_interface__`` of these, or GeoJSON. Of
+            a collection of geometries its polygons are taken, if there is nothing else in it. A
+            collection of features becomes what `read_domain` makes of it: a region for each name.
+        holes : sequence of (n, 2) array_like, optional
+            The rings of the holes, within the outer one; a ring inside a hole is an island.
         names : mapping of str or int to sequence of int, optional
-            As in `Domain`; segments are numbered ring by ring, in the order given.
+            As in `Domain`; segments are numbered ring by ring, in the order given: each starts at
+            the point of its number. A point repeated in a row counts, but has no segment.
+
+        Raises
+        ------
+        DomainError
+            As `Domain`; and if a hole is not in its shell, or parts of a polygon overlap.
         """
-        if hasattr(outer, "__geo_interface__"):
-            if len(holes):
-                raise DomainError("give a shapely polygon with its own holes, or rings, not both")
-            rings = rings_of(outer.__geo_interface__)
-        else:
-            rings = [outer, *holes]
-        points, segments = joined_rings(rings)
-        return cls(points, segments, "nesting", names=names)
+        from .coverage import domain_of_shapes
+        from .polygon_input import is_collection, shape_of_polygon, shapes_of
+        from .ring_nesting import refuse_rings_out_of_place, rings_with_labels
+
+        holes = () if holes is None else holes
+        if is_collection(outer):
+            if names is not None or len(holes):
+                raise DomainError("features have names and holes of their own: leave out yours")
+            return domain_of_shapes(shapes_of(outer))
+        shape = shape_of_polygon(outer, holes)
+        shape.refuse_what_is_left_out()
+        rings, points = rings_with_labels(shape)
+        joined = joined_rings(points)
+        tag_of, tags = checked_names(names, joined.n_given, given=None)
+        domain = cls(
+            joined.points,
+            joined.segments,
+            "nesting",
+            names=labelled(tags[joined.given]),
+            tags=tag_of,
+        )
+        if len(rings) > 1 or len(joined.points) < len(joined.segments):
+            start, end = domain.points[domain.pieces].transpose(1, 0, 2)
+            first, last = domain.points[domain.segments[domain.piece_segments]].transpose(1, 0, 2)
+            along = ((end - start) * (last - first)).sum(axis=1) > 0
+            ring = joined.ring[domain.piece_segments]
+            refuse_rings_out_of_place(shape, rings, domain.points, domain.pieces, along, ring)
+        return domain
 
     @classmethod
     def rectangle(cls, x0: float, y0: float, x1: float, y1: float) -> Domain:
@@ -158,7 +203,7 @@ class Domain(Value):
         curves: Sequence[Curve],
         *,
         names: ByLabel[Iterable[int]] | None = None,
-        holes: ArrayLike | str = "nesting",
+        holes: ArrayLike | str | None = None,
         regions: ByLabel[ArrayLike] | None = None,
         tags: Mapping[str, int] | None = None,
         region_tags: Mapping[str, int] | None = None,
@@ -217,7 +262,7 @@ class Domain(Value):
         if isinstance(curves, Curve):
             raise DomainError(f"curves={curves!r}: a sequence of curves is wanted, [curve]")
         curves = tuple(curves)
-        numbers, tag_of = checked_names(names or {}, len(curves), "curve", tags)
+        numbers, tag_of = checked_names(names, len(curves), "curve", tags)
         inside = Inside.checked(holes, regions, region_tags)
         isolated = checked_points(points, "point", least=0)
         skeleton = skeleton_of(curves, tag_of, inside, isolated, corner_angle, join_tolerance)
@@ -419,10 +464,10 @@ class Domain(Value):
         out: Ints = np.concatenate([[0], self.seed_regions]).astype(np.int32)[labels]
         return out
 
-    def _triangulate(self) -> tuple[Ints, Ints, Ints, Ints, NDArray[np.bool_]]:
+    def _triangulate(self, certain: bool) -> tuple[Ints, Ints, Ints, Ints, NDArray[np.bool_]]:
         try:
             return _core.triangulate(
-                self.points, self.segments, self.holes, self.seeds, self.nesting
+                self.points, self.segments, self.holes, self.seeds, self.nesting, certain
             )
         except _core.Fault as fault:
             raise DomainError(fault_text(self, *fault.args)) from None

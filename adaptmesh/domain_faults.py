@@ -21,6 +21,7 @@ def fault_text(domain: Domain, kind: str, i: int, j: int, x: float, y: float) ->
         return (
             f"{a} and {b} overlap near {place}: keep one, divided at the points on it, {OR_REPAIR}"
         )
+    line = line_text(domain, j) if kind in ("open_hole", "uncertain_hole") else ""
     messages = {
         "all_collinear": "all points lie on one line: there is nothing to mesh",
         "duplicate_points": f"points {i} and {j} are the same, {place}: keep one of them, "
@@ -28,18 +29,22 @@ def fault_text(domain: Domain, kind: str, i: int, j: int, x: float, y: float) ->
         "open_boundary": "the boundary is not closed: the outside leaks in"
         + (f" past point {i} {place}, where a boundary ends" if i >= 0 else "")
         + "; close it, or check `holes`; adaptmesh.repair closes gaps below its tolerance",
-        "open_hole": "a line is in a hole, where nothing is meshed"
-        + (f": it ends at point {i} {place}" if i >= 0 else "")
-        + "; remove it, or check `holes`",
+        "open_hole": f"{line} is in a hole, where nothing is meshed, near point "
+        f"{i} {place}: on both sides of it is a hole or the outside; remove it there, check "
+        f"`holes`, {OR_REPAIR}",
+        "uncertain_hole": f"whether what {line} ends at, at point {i} {place}, is "
+        "a hole is uncertain: say holes=[] if it is not, holes='nesting' if it is, or give a point "
+        "in each hole",
         "hole_outside": f"hole {i} at {place} is not inside the domain: move or remove it",
         "hole_on_segment": f"hole {i} at {place} lies on a segment: move it into the hole",
         "region_seed_outside": f"the point of {seed_text(domain, i)} at {place} is not inside the "
-        "domain: move or remove it",
+        "domain: move or remove it, or check `holes` (holes=[] if there are none)",
         "region_seed_on_segment": f"the point of {seed_text(domain, i)} at {place} lies on a "
         "segment: move it into the region",
         "two_seeds_one_region": f"{seed_text(domain, i)} and {seed_text(domain, j)} are the same "
         "part of the domain: remove one, or separate them by segments",
-        "point_outside": f"point {i} at {place} is on no segment and outside the domain: remove it",
+        "point_outside": f"point {i} at {place} is on no segment and outside the domain, or in a "
+        f"hole: remove it, {OR_REPAIR}",
         "empty_domain": "nothing is left inside: every part of the domain is a hole",
     }
     return messages.get(kind, f"{kind} at {place}")
@@ -65,6 +70,13 @@ def segment_text(domain: Domain, i: int) -> str:
     (x0, y0), (x1, y1) = domain.points[domain.segments[i]].tolist()
     what = domain.curved.describe(i) if domain.curved.curves else f"segment {i}"
     return f"{what} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
+
+
+def line_text(domain: Domain, i: int) -> str:
+    """A segment with its name."""
+    tag = int(domain.segment_tags[i])
+    names = [name for name, number in domain.names.items() if number == tag]
+    return segment_text(domain, i) + (f", named {names[0]!r}," if tag and names else "")
 
 
 def seed_text(domain: Domain, i: int) -> str:

@@ -22,14 +22,20 @@ Value = TypeVar("Value")
 ByLabel = Mapping[str, Value] | Mapping[int, Value] | Mapping[Label, Value]
 
 LARGEST = 1e75  # coordinate: its fourth power is still a double
+FLAT = 1e-9
+"""Heights that differ by at most this share of the extent are rounding: the points are plane."""
 OR_REPAIR = "or let adaptmesh.repair do it"
 
 
 @dataclass(frozen=True, eq=False)
 class Inside:
-    """What is inside the boundaries: holes, and regions with their seeds."""
+    """What is inside the boundaries: holes, and regions with their seeds.
+
+    Holes are found by nesting or given by points; `certain` if those found have to be certain.
+    """
 
     nesting: bool
+    certain: bool
     holes: Floats
     region_names: Mapping[str, int]
     seeds: Floats
@@ -38,16 +44,17 @@ class Inside:
     @classmethod
     def checked(
         cls,
-        holes: ArrayLike | str,
+        holes: ArrayLike | str | None,
         regions: ByLabel[ArrayLike] | None,
         given: Mapping[str, int] | None,
     ) -> Inside:
         """From the arguments of `Domain`."""
-        nesting = isinstance(holes, str)
-        if nesting and holes != "nesting":
+        if isinstance(holes, str) and holes != "nesting":
             raise DomainError(f"holes={holes!r}: give points inside the holes, or 'nesting'")
-        places = checked_points(() if nesting else holes, "hole", least=0)
-        return cls(nesting, places, *checked_regions(regions or {}, given or {}))
+        given_holes = () if holes is None or isinstance(holes, str) else holes
+        nesting = given_holes is not holes
+        places = checked_points(given_holes, "hole", least=0)
+        return cls(nesting, holes is None, places, *checked_regions(regions, given))
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
@@ -65,6 +72,8 @@ def checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
         raise DomainError(f"{what}s must be an (n, 2) array of numbers: {error}") from None
     if out.size == 0:
         out = out.reshape(0, 2)
+    if out.ndim == 2 and out.shape[1] == 3:
+        out = _without_heights(out, what)
     if out.ndim != 2 or out.shape[1] != 2:
         raise DomainError(f"{what}s must be an (n, 2) array, not one of shape {out.shape}")
     if len(out) < least:
@@ -81,6 +90,18 @@ def checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
             f"{LARGEST:g} overflow; choose another unit of length"
         )
     return read_only(out)
+
+
+def _without_heights(points: Floats, what: str) -> Floats:
+    """Points (n, 3) that lie in a plane z = constant without z, or a `DomainError`."""
+    z = points[:, 2]
+    if np.isfinite(points).all() and not is_level(z, points[:, :2]):
+        i = int(np.argmax(np.abs(z - z[0])))
+        raise DomainError(
+            f"{what} {i} is at height {z[i]:g}, and {what} 0 at {z[0]:g}: a domain is plane, give "
+            "[:, :2] of the points"
+        )
+    return np.ascontiguousarray(points[:, :2])
 
 
 def checked_pairs(segments: ArrayLike, n_points: int) -> Ints:
@@ -122,9 +143,10 @@ def check_is_mapping(labels: object, what: str) -> None:
 
 
 def checked_regions(
-    regions: ByLabel[ArrayLike], given: Mapping[str, int]
+    regions: ByLabel[ArrayLike] | None, given: Mapping[str, int] | None
 ) -> tuple[Mapping[str, int], Floats, Ints]:
     """The number of each name, the seeds (s, 2), and the region of each, or a `DomainError`."""
+    regions = {} if regions is None else regions
     check_is_mapping(regions, "regions")
     names, numbers = numbered(regions, given, "region")
     seeds, owners = [], []
@@ -137,14 +159,15 @@ def checked_regions(
 
 
 def checked_names(
-    names: ByLabel[Iterable[int]],
+    names: ByLabel[Iterable[int]] | None,
     n: int,
     what: str = "segment",
     given: Mapping[str, int] | None = None,
 ) -> tuple[Mapping[str, int], Ints]:
     """The tag of each name and of each of n segments (or curves), or a `DomainError`."""
+    names = {} if names is None else names
     check_is_mapping(names, "names")
-    tag_of, numbers = numbered(names, given or {}, "tag")
+    tag_of, numbers = numbered(names, given, "tag")
     tags = np.zeros(n, np.int32)
     for tag, (name, segments) in zip(numbers, names.items(), strict=True):
         for i in segments:
@@ -161,13 +184,15 @@ def checked_names(
 
 
 def numbered(
-    labels: Iterable[Label], given: Mapping[str, int], what: str
+    labels: Iterable[Label], given: Mapping[str, int] | None, what: str
 ) -> tuple[Mapping[str, int], list[int]]:
     """The number of each name, and of each label in order.
 
     A number stands for itself, and has no name; a name has the number that is given for it, or else
     the least one from 1 on that nothing has yet.
     """
+    given = {} if given is None else given
+    check_is_mapping(given, f"{what}s by name")
     labels = [_checked_label(k, what) for k in labels]
     taken = {*given.values(), *(k for k in labels if isinstance(k, int))}
     for number in taken:
@@ -206,44 +231,63 @@ def labelled(tags: NDArray[np.signedinteger]) -> dict[Label, list[int]]:
     return {tag: np.flatnonzero(tags == tag).tolist() for tag in found}
 
 
-def rings_of(geometry: Mapping[str, Any]) -> list[ArrayLike]:
-    """All rings of a GeoJSON-like Polygon or MultiPolygon."""
-    kind = geometry.get("type")
-    if kind == "Polygon":
-        polygons = [geometry["coordinates"]]
-    elif kind == "MultiPolygon":
-        polygons = geometry["coordinates"]
-    else:
-        raise DomainError(f"a domain is made of a Polygon or MultiPolygon, not of a {kind}")
-    rings = [np.asarray(ring, float) for polygon in polygons for ring in polygon]
-    heights = np.concatenate([ring[:, 2:].ravel() for ring in rings] or [np.empty(0)])
-    if len(heights) and heights.min() < heights.max():
-        low, high = heights.min(), heights.max()
-        raise DomainError(
-            f"points of this {kind} lie at heights from {low:g} to {high:g}, and a domain is "
-            f"plane: leave the heights out (shapely.force_2d), {OR_REPAIR}"
-        )
-    return [ring[:, :2] for ring in rings]
+def is_level(heights: Floats, xy: Floats) -> bool:
+    """Whether points lie in one plane z = constant, to `FLAT` of their extent."""
+    return bool(np.ptp(heights) <= FLAT * np.ptp(xy, axis=0).max())
 
 
-def joined_rings(rings: Sequence[ArrayLike]) -> tuple[Floats, Ints]:
-    """Points and segments of closed rings; rings that share a point share its number."""
-    points, segments, n = [], [], 0
+@dataclass(frozen=True, eq=False)
+class JoinedRings:
+    """Closed rings as points and segments.
+
+    Attributes
+    ----------
+    points : (n, 2) array
+        All different: rings that share a point share its number.
+    segments : (k, 2) array
+        In order, ring by ring; none without length.
+    ring : (k,) array
+        The ring of each segment.
+    given : (k,) array
+        The number of each segment, where a point repeated in a row starts one, too.
+    n_given : int
+        How many there are then.
+    """
+
+    points: Floats
+    segments: NDArray[np.int64]
+    ring: NDArray[np.int64]
+    given: NDArray[np.int64]
+    n_given: int
+
+
+def joined_rings(rings: Sequence[ArrayLike]) -> JoinedRings:
+    """Points and segments of closed rings.
+
+    A ring may end where it starts, or not; points repeated in a row count once.
+    """
+    points, segments, ring_of, given, n, n_given = [], [], [], [], 0, 0
     for k, ring in enumerate(rings):
         p = checked_points(ring, f"ring {k}: point", least=0)
         if len(p) and (p[0] == p[-1]).all():
             p = p[:-1]
-        if len(p) < 3:
-            raise DomainError(f"ring {k} has {len(p)} different points: at least 3 are needed")
-        number = n + np.arange(len(p))
-        points.append(p)
+        new = np.flatnonzero((p != np.roll(p, -1, axis=0)).any(axis=1))
+        different = len(np.unique(p, axis=0))
+        if different < 3:
+            raise DomainError(f"ring {k} has {different} different points: at least 3 are needed")
+        number = n + np.arange(len(new))
+        points.append(p[new])
         segments.append(np.stack([number, np.roll(number, -1)], axis=1))
-        n += len(p)
-    joined = np.concatenate(points) if points else np.empty((0, 2))
+        ring_of.append(np.full(len(new), k))
+        given.append(n_given + new)
+        n += len(new)
+        n_given += len(p)
+    joined = np.concatenate(points)
+    pairs = np.concatenate(segments)
     unique, first, inverse = np.unique(joined, axis=0, return_index=True, return_inverse=True)
-    if len(unique) == len(joined):
-        return joined, np.concatenate(segments) if segments else np.empty((0, 2), int)
-    order = np.argsort(first)  # np.unique sorts; keep the order in which the points were given
-    number_of = np.empty(len(unique), int)
-    number_of[order] = np.arange(len(unique))
-    return unique[order], number_of[inverse.ravel()][np.concatenate(segments)]
+    if len(unique) < len(joined):
+        order = np.argsort(first)  # np.unique sorts; keep the order in which points were given
+        number_of = np.empty(len(unique), int)
+        number_of[order] = np.arange(len(unique))
+        joined, pairs = unique[order], number_of[inverse.ravel()][pairs]
+    return JoinedRings(joined, pairs, np.concatenate(ring_of), np.concatenate(given), n_given)

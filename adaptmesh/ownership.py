@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from .arrangement import Faces, Repair
+from .arrangement import NOWHERE, Faces, Repair
 from .raw import Shape
 from .rings import Ring
 
@@ -70,12 +70,11 @@ def owners_of_faces(
             log.append(Repair("hole in a hole", rings[ring].place, what))
     log += odd.records()
     for s in np.setdiff1d(np.arange(len(shapes)), owner).tolist():
-        place = next(ring.place for ring in [*rings, _NOWHERE] if ring.shape in (s, -1))
+        if shapes[s].is_empty:
+            continue  # there is a record of that
+        place = next((ring.place for ring in rings if ring.shape == s), NOWHERE)
         log.append(Repair("polygon lost", place, f"nothing is left of {shapes[s].label}"))
     return owner
-
-
-_NOWHERE = Ring(-1, -1, 0, "", 0.0, (np.nan, np.nan))
 
 
 def _is_inside(part: Sequence[int], rings: Sequence[Ring], depth: _Depths) -> bool:

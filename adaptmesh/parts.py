@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from .containing import containing_triangles
 from .errors import DomainError
 from .invariants.subject import edge_keys
 from .mesh import Mesh
@@ -50,18 +51,7 @@ def hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
     by_area = np.argsort(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])[::-1]
     _, first = np.unique(part[by_area], return_index=True)
     centres = p[by_area[first]].mean(axis=1)
-    out: Floats = centres[~_covered(mesh, centres)]
-    return out
-
-
-def _covered(mesh: Mesh, places: Floats) -> NDArray[np.bool_]:
-    """Which of the places lie in a triangle of the mesh, by exact signs: some are on its sides."""
-    a, b, c = mesh.points[mesh.triangles].transpose(1, 0, 2).copy()
-    out = np.zeros(len(places), bool)
-    for i, place in enumerate(places):
-        x = np.tile(place, (len(a), 1))
-        signs = [_core.orient2d(*side, x) for side in ((a, b), (b, c), (c, a))]
-        out[i] = (np.min(signs, axis=0) >= 0).any()
+    out: Floats = centres[containing_triangles(mesh.points, mesh.triangles, centres) < 0]
     return out
 
 

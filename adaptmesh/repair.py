@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
 from typing import Any
-
-import numpy as np
 
 from .arrangement import Repair, Repairs, used_tolerance
 from .coverage import repaired_domain_of_shapes
 from .domain import Domain
 from .drawings import Drawing
 from .errors import DomainError
-from .geojson import shapes_of_geojson
 from .io.located import located, only_our_errors
-from .raw import Outline, Shape
+from .polygon_input import shapes_of
+from .raw import Outline
 from .repair_segments import repaired_domain_of_segments
 
 __all__ = ["Repair", "Repairs", "repair"]
@@ -108,47 +105,4 @@ def _repaired(dirty: Any, tolerance: float | None) -> tuple[Domain, Repairs]:
         dirty = Outline.of_domain(dirty)
     if isinstance(dirty, Outline):
         return repaired_domain_of_segments(dirty, tolerance)
-    return repaired_domain_of_shapes(_shapes(dirty), tolerance)
-
-
-def _shapes(dirty: Any) -> Sequence[Shape]:
-    """Polygons of whatever was handed in."""
-    if isinstance(dirty, Mapping):
-        if isinstance(dirty.get("type"), str):
-            return shapes_of_geojson(dirty)
-        return [_shape(polygon, i, str(name)) for i, (name, polygon) in enumerate(dirty.items())]
-    if _is_polygon(dirty) or _is_array(dirty) or _is_array(dirty[0] if len(dirty) else None):
-        return [_shape(dirty, 0, None)]
-    if all(isinstance(item, Shape) for item in dirty):
-        return list(dirty)
-    if all(isinstance(item, Mapping) and item.get("type") == "Feature" for item in dirty):
-        return shapes_of_geojson({"type": "FeatureCollection", "features": list(dirty)})
-    return [_shape(polygon, i, None) for i, polygon in enumerate(dirty)]
-
-
-def _shape(polygon: Any, number: int, name: str | None) -> Shape:
-    """One polygon of whatever was handed in."""
-    if hasattr(polygon, "geom_type"):
-        return Shape.of_shapely(polygon, number, name)
-    if hasattr(polygon, "__geo_interface__"):
-        polygon = polygon.__geo_interface__
-    if isinstance(polygon, Mapping):
-        if polygon.get("type") == "Feature":
-            polygon = polygon.get("geometry")
-        return Shape.of_geojson(polygon, number, name)
-    rings = [polygon] if _is_array(polygon) else polygon
-    return Shape.of_rings(rings[0], rings[1:], number, name)
-
-
-def _is_polygon(item: Any) -> bool:
-    return hasattr(item, "geom_type") or hasattr(item, "__geo_interface__")
-
-
-def _is_array(item: Any) -> bool:
-    """Whether it is an (n, 2) array of numbers, or a sequence that can be one."""
-    if item is None or _is_polygon(item) or isinstance(item, (Mapping, Shape)):
-        return False
-    try:
-        return np.asarray(item, dtype=np.float64).ndim == 2
-    except (TypeError, ValueError):
-        return False
+    return repaired_domain_of_shapes(shapes_of(dirty), tolerance)

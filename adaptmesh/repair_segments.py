@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from .arrangement import Faces, Noded, Repair, Repairs, Words, at, find_faces, node, used_tolerance
+from .arrangement import Noded, Repair, Repairs, Words, at, find_faces, node, used_tolerance
 from .arrangement.numbering import unique_edges, used_points
 from .domain import Domain
 from .domain_input import (
+    Inside,
     checked_names,
     checked_pairs,
     checked_points,
@@ -18,6 +19,7 @@ from .domain_input import (
     name_of_number,
 )
 from .errors import DomainError
+from .inside_lines import Lines
 from .raw import Outline
 
 Floats = NDArray[np.float64]
@@ -33,11 +35,7 @@ def repaired_domain_of_segments(
     segments = checked_pairs(outline.segments, len(points)).astype(np.int64)
     names, tags32 = checked_names(outline.names, len(segments), given=outline.tags)
     tags = tags32.astype(np.int64)
-    holes = (
-        outline.holes
-        if isinstance(outline.holes, str)
-        else np.array(checked_points(outline.holes, "hole", least=0))
-    )
+    inside = Inside.checked(outline.holes, outline.regions, outline.region_tags)
     log = _segments_without_length(points, segments)
     tolerance = used_tolerance(points, tolerance)
     words = Words(lambda v: f"point {v}", lambda i: f"segment {i}")
@@ -47,11 +45,17 @@ def repaired_domain_of_segments(
     edges, edge_of_piece, _ = unique_edges(noded.pieces)
     edge_tags = _tags(edge_of_piece, tags[noded.segment], len(edges))
     log += _overlaps(noded, edges, edge_of_piece, edge_tags, tags, names)
-    kept = ~_spikes(noded, edges, edge_of_piece, holes, log)
+    if not len(edges):
+        raise DomainError("no segment is longer than the tolerance: there is nothing to mesh")
+    used, renumbered = used_points(edges)
+    lines = Lines(find_faces(noded.points[used], renumbered), inside)
+    spikes = _spikes(noded, edges, edge_of_piece, lines, log)
+    kept = ~(spikes | _in_holes(noded, edges, lines, spikes, log))
+    lone = _lone_points_inside(noded, edges[kept], lines, log)
     log += _lost_names(names, tags, edge_tags[kept], points, segments)
     if log:
-        _check_seeds(outline, holes, noded.points[edges], max(tolerance, drift))
-    domain = _domain(noded, edges[kept], edge_tags[kept], outline, holes, names)
+        _check_seeds(inside, noded.points[edges], max(tolerance, drift))
+    domain = _domain(noded, edges[kept], edge_tags[kept], lone, outline, names)
     return domain, Repairs(tuple(log), tolerance, drift)
 
 
@@ -104,38 +108,41 @@ def _overlaps(
     return log
 
 
-def _spikes(noded: Noded, edges: Ints, edge: Ints, holes: Floats | str, log: list[Repair]) -> Bools:
+def _spikes(noded: Noded, edges: Ints, edge: Ints, lines: Lines, log: list[Repair]) -> Bools:
     """Edges that were drawn more than once, and stick out of the domain."""
     doubled = np.bincount(edge, minlength=len(edges)) > 1
-    if not doubled.any():
-        return doubled
-    used, renumbered = used_points(edges)
-    faces = find_faces(noded.points[used], renumbered)
-    spikes: Bools = doubled & (faces.left == faces.right) & ~_inside(faces, holes)[faces.left]
+    spikes: Bools = doubled & lines.is_loose
     for i in np.flatnonzero(spikes).tolist():
-        p, q = noded.points[edges[i]]
-        (x, y), length = (0.5 * (p + q)).tolist(), float(np.hypot(*(q - p)))
+        place, length = _middle_and_length(noded, edges[i])
         what = f"a line drawn there and back sticks out of the domain by {length:.3g}; removed"
-        log.append(Repair("spike", (x, y), what))
+        log.append(Repair("spike", place, what))
     return spikes
 
 
-def _inside(faces: Faces, holes: Floats | str) -> Bools:
-    """Which faces are in the domain."""
-    if not isinstance(holes, str):
-        out: Bools = np.ones(faces.count, bool)
-        out[0] = False
-        out[[faces.at(hole) for hole in holes]] = False
-        return out
+def _in_holes(noded: Noded, edges: Ints, lines: Lines, spikes: Bools, log: list[Repair]) -> Bools:
+    """Edges in holes, or between two, that are no spikes."""
+    lost = lines.is_in_hole & ~spikes
+    for i in np.flatnonzero(lost).tolist():
+        place, length = _middle_and_length(noded, edges[i])
+        what = f"a line of length {length:.3g} is in a hole, where nothing is meshed; removed"
+        log.append(Repair("line in a hole", place, what))
+    return lost
 
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import shortest_path
 
-    links = (np.ones(len(faces.left)), (faces.left, faces.right))
-    graph = coo_array(links, shape=(faces.count, faces.count)).tocsr()
-    depth = shortest_path(graph, directed=False, unweighted=True, indices=0)
-    odd: Bools = depth % 2 == 1
-    return odd
+def _middle_and_length(noded: Noded, edge: Ints) -> tuple[tuple[float, float], float]:
+    p, q = noded.points[edge]
+    x, y = (0.5 * (p + q)).tolist()
+    return (x, y), float(np.hypot(*(q - p)))
+
+
+def _lone_points_inside(noded: Noded, edges: Ints, lines: Lines, log: list[Repair]) -> Ints:
+    """The points of no segment that lie in the domain, or on an edge of it."""
+    lone = np.setdiff1d(noded.lone, edges)
+    is_inside = lines.contains(noded.points[lone])
+    for x, y in noded.points[lone[~is_inside]].tolist():
+        what = "a point of no segment is outside, or in a hole; removed"
+        log.append(Repair("point outside", (x, y), what))
+    return lone[is_inside]
 
 
 def _lost_names(
@@ -150,27 +157,23 @@ def _lost_names(
     return log
 
 
-def _check_seeds(outline: Outline, holes: Floats | str, segments: Floats, reach: float) -> None:
+def _check_seeds(inside: Inside, segments: Floats, reach: float) -> None:
     """Refuse seeds that a segment may have been moved over."""
     import shapely
 
-    seeds = [
-        (f"the point of region {name!r}", p)
-        for name, where in outline.regions.items()
-        for p in np.atleast_2d(np.asarray(where, float))
-    ]
-    if not isinstance(holes, str):
-        seeds += [(f"hole {i}", p) for i, p in enumerate(holes)]
-    if not seeds:
+    name_of = name_of_number(inside.region_names, inside.seed_regions)
+    labels = [f"the point of region {name_of[r]!r}" for r in inside.seed_regions.tolist()]
+    labels += [f"hole {i}" for i in range(len(inside.holes))]
+    if not labels:
         return
+    places = np.concatenate([inside.seeds, inside.holes])
     tree = shapely.STRtree(shapely.linestrings(segments))
-    places = shapely.points(np.array([p for _, p in seeds]))
-    near = tree.query(places, predicate="dwithin", distance=reach)[0]
+    near = tree.query(shapely.points(places), predicate="dwithin", distance=reach)[0]
     if len(near):
-        label, (x, y) = seeds[near.min()]
+        k = int(near.min())
         raise DomainError(
-            f"{label} at {at(x, y)} is within {reach:.3g} of a segment, so that the repair may "
-            "have put it on the other side: move it away from segments"
+            f"{labels[k]} at {at(*places[k])} is within {reach:.3g} of a segment, so that the "
+            "repair may have put it on the other side: move it away from segments"
         )
 
 
@@ -178,17 +181,15 @@ def _domain(
     noded: Noded,
     edges: Ints,
     edge_tags: Ints,
+    lone: Ints,
     outline: Outline,
-    holes: ArrayLike | str,
     names: Mapping[str, int],
 ) -> Domain:
-    if not len(edges):
-        raise DomainError("no segment is longer than the tolerance: there is nothing to mesh")
-    used = np.union1d(edges, noded.lone)
+    used = np.union1d(edges, lone)
     return Domain(
         noded.points[used],
         np.searchsorted(used, edges),
-        holes=holes,
+        holes=outline.holes,
         regions=outline.regions,
         names=labelled(edge_tags),
         tags=names,

@@ -8,13 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .arrangement import Repair, Words, at, first_of_equal
+from .arrangement import NOWHERE, Repair, Words, at, first_of_equal
 from .domain_input import LARGEST
 from .errors import DomainError
 from .raw import Shape
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+REPEATED = "duplicate points"
+"""The kind of a repair of points repeated in a row of a ring: to leave them out changes nothing."""
 
 
 @dataclass(frozen=True)
@@ -88,31 +91,35 @@ def rings_of(shapes: Sequence[Shape], log: list[Repair]) -> Rings:
     shapes : sequence of Shape
     log : list of Repair
         Gets a record of each ring that was not closed, of each point given twice in a row, of each
-        ring with less than three points, and of each polygon that does not lie in a plane.
+        ring with less than three points, and of each polygon that is empty, holds something else,
+        or does not lie in a plane.
 
     Raises
     ------
     DomainError
-        If a polygon is empty or a coordinate is not finite, or too large.
+        If no polygon has an area, or a coordinate is not finite, or too large.
     """
     rings: list[Ring] = []
     points, segments, ring_of, numbers = [np.empty((0, 2))], [], [], []
     n = part_number = 0
     for s, shape in enumerate(shapes):
-        if not any(len(ring) for part in shape.parts for ring in part):
-            raise DomainError(f"{shape.label} is empty: remove it")
+        if shape.is_empty:
+            log.append(Repair("empty polygon", NOWHERE, f"{shape.label} is empty; left out"))
+        if shape.others and not shape.is_empty:
+            what = f"{shape.label} also holds a {', a '.join(shape.others)}; left out"
+            log.append(Repair("not a polygon", _some_point(shape), what))
         if shape.heights is not None:
             log.append(_flattened(shape))
         for k, part in enumerate(shape.parts):
             for r, given in enumerate(part):
-                label = _label(shape, k, r)
+                label = ring_label(shape, k, r)
                 if not len(given):
                     continue
                 _check(given, label)
                 p, number = _closed(given, label, shape.closed, log)
                 if len(p):
                     x, y = p[0].tolist()
-                    rings.append(Ring(s, part_number, r, label, _area(p), (x, y)))
+                    rings.append(Ring(s, part_number, r, label, ring_area(p), (x, y)))
                     here = n + np.arange(len(p))
                     points.append(p)
                     segments.append(np.stack([here, np.roll(here, -1)], axis=1))
@@ -130,13 +137,18 @@ def rings_of(shapes: Sequence[Shape], log: list[Repair]) -> Rings:
 
 
 def _flattened(shape: Shape) -> Repair:
-    x, y = next(ring[0].tolist() for part in shape.parts for ring in part if len(ring))
     low, high = shape.heights or (0.0, 0.0)
     what = f"points of {shape.label} lie at heights from {low:g} to {high:g}; x and y kept"
-    return Repair("heights", (x, y), what)
+    return Repair("heights", _some_point(shape), what)
 
 
-def _label(shape: Shape, part: int, ring: int) -> str:
+def _some_point(shape: Shape) -> tuple[float, float]:
+    x, y = next(ring[0].tolist() for part in shape.parts for ring in part if len(ring))
+    return x, y
+
+
+def ring_label(shape: Shape, part: int, ring: int) -> str:
+    """How messages call a ring of a polygon."""
     label = shape.label
     if len(shape.parts) > 1:
         label = f"part {part} of {label}"
@@ -169,7 +181,7 @@ def _closed(given: Floats, label: str, must_close: bool, log: list[Repair]) -> t
         for i in np.flatnonzero(again).tolist():
             x, y = points[i].tolist()
             what = f"point {number[i]} of {label} is given twice in a row; once is enough"
-            log.append(Repair("duplicate points", (x, y), what))
+            log.append(Repair(REPEATED, (x, y), what))
         points, number = points[~again], number[~again]
     if len(points) < 3:
         x, y = given[0].tolist()
@@ -179,6 +191,7 @@ def _closed(given: Floats, label: str, must_close: bool, log: list[Repair]) -> t
     return points, number
 
 
-def _area(p: Floats) -> float:
+def ring_area(p: Floats) -> float:
+    """Area within a ring that does not cross itself."""
     x, y = (p - p[0]).T
     return float(0.5 * abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)))

@@ -3,9 +3,10 @@
 from .distance import first_of_equal
 from .faces import Faces, find_faces
 from .noding import Noded, Words, node, used_tolerance
-from .record import Repair, Repairs, at
+from .record import NOWHERE, Repair, Repairs, at
 
 __all__ = [
+    "NOWHERE",
     "Faces",
     "Noded",
     "Repair",

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from ..containing import containing_triangles
 from ..errors import DomainError
 from ..invariants.subject import edge_keys
 from .record import at
@@ -66,17 +67,10 @@ class Faces:
         out: Floats = p[order[last]].mean(axis=1)
         return out
 
-    def at(self, place: Floats) -> int:
-        """The face that a place is in; of one on an edge, one beside it; the outside elsewhere."""
-        p = self.points[self.triangles]
-        near = ((p.min(axis=1) <= place) & (place <= p.max(axis=1))).all(axis=1)
-        a, b, c = np.ascontiguousarray(p[near].transpose(1, 0, 2))
-        x = np.broadcast_to(place, a.shape).copy()
-        inside = np.ones(len(x), bool)
-        for start, end in ((a, b), (b, c), (c, a)):
-            inside &= _core.orient2d(start, end, x) >= 0
-        found = self.face[near][inside]
-        return int(found[0]) if len(found) else 0
+    def at(self, places: Floats) -> Ints:
+        """The face that each place (k, 2) is in; on an edge one beside it, elsewhere 0."""
+        found = containing_triangles(self.points, self.triangles, places)
+        return np.append(self.face, 0)[found]
 
     @cached_property
     def _doubled_areas(self) -> Floats:

