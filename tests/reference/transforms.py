@@ -16,6 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from adaptmesh.curves import Curve
+
 
 @dataclass(frozen=True)
 class Transform:
@@ -90,3 +92,25 @@ TRANSFORMS = [
     Transform("sheared", ((1.0, 0.9), (0.2, 0.7))),
     Transform("stretched by 100, turned", ((70.71, -0.7071), (70.71, 0.7071))),
 ]
+
+
+class Moved(Curve):
+    """A curve carried by a map, exactly: its points are the images of the points of the curve."""
+
+    def __init__(self, curve, transform):
+        self.curve, self.transform = curve, transform
+        self.is_closed, self.is_straight = curve.is_closed, curve.is_straight
+
+    @property
+    def breaks(self):
+        return self.curve.breaks
+
+    @property
+    def knots(self):
+        return self.curve.knots
+
+    def _point(self, t):
+        return self.transform(self.curve.point(t))
+
+    def _derivative(self, t):
+        return self.curve.derivative(t) @ np.array(self.transform.matrix).T
