@@ -36,6 +36,7 @@ def adapt(
     *,
     keep: bool = False,
     frozen: Iterable[str] = (),
+    straight_tolerance: float | None = None,
     placement: str = "front",
     max_vertices: int = 5_000_000,
     progress: Progress | None = None,
@@ -64,6 +65,11 @@ def adapt(
     frozen : sequence of str, optional
         Names of boundaries and lines whose edges stay as the mesh has them, to fit a neighbour;
         those that are periodic with them stay, too.
+    straight_tolerance : float, optional
+        For a mesh without a domain: how far the vertices of its border may be off a straight line
+        on which they are no corners. If not given, by the digits of the coordinates, see
+        `Domain.of_mesh`. How many corners were found, and why, is in ``domain.corners_found`` of
+        the result, and `measure` prints it.
     placement, max_vertices, progress
         As in `generate`; `placement` is of no account where the mesh is edited.
 
@@ -72,7 +78,11 @@ def adapt(
     Mesh
     """
     check_is_mesh(mesh)
-    domain = mesh.domain or Domain.of_mesh(mesh)
+    if mesh.domain is not None and straight_tolerance is not None:
+        raise ValueError(
+            "straight_tolerance finds the domain of a mesh; this mesh has one: leave it out"
+        )
+    domain = mesh.domain or Domain.of_mesh(mesh, straight_tolerance=straight_tolerance)
     field = control_space_on(mesh, metric)
     meshed = frozen_domain(domain, mesh, frozen) if frozen else domain
 

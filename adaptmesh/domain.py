@@ -33,6 +33,7 @@ from .value import Value
 
 if TYPE_CHECKING:
     from .mesh import Mesh
+    from .straight_sides import CornersFound
 
 SMALLEST_TOLERANCE = 1e-10  # of `Domain.outline`, as a share of the extent
 
@@ -130,6 +131,8 @@ class Domain(Value):
         self.periodic: tuple[PeriodicPair, ...] = ()
         #: Which segments are not cut, (k,), see `with_frozen`.
         self.segment_is_frozen: NDArray[np.bool_] = read_only(np.zeros(len(self.segments), bool))
+        #: How corners were told from other vertices on the border of a mesh, see `of_mesh`.
+        self.corners_found: CornersFound | None = None
 
     @classmethod
     def polygon(
@@ -274,8 +277,18 @@ class Domain(Value):
         return domain
 
     @classmethod
-    def of_mesh(cls, mesh: Mesh, corner_angle: float | None = None) -> Domain:
+    def of_mesh(
+        cls,
+        mesh: Mesh,
+        corner_angle: float | None = None,
+        *,
+        straight_tolerance: float | None = None,
+    ) -> Domain:
         """The domain that a mesh covers, from its constrained edges, regions and names.
+
+        Vertices on a straight line of the border are no corners of the domain: they can be left out
+        of the next mesh. `corners_found` of the domain says how many corners there are, of how many
+        vertices, to what tolerance the rest is straight, and why to that.
 
         Parameters
         ----------
@@ -285,10 +298,23 @@ class Domain(Value):
             from edge to edge: it becomes splines through its vertices, from corner to corner, and
             stays straight where several edges lie on one line. If not, it is the polygon that the
             mesh has.
+        straight_tolerance : float, optional
+            How far vertices may be off a straight line, in units of the coordinates. If not given,
+            by their digits: 1e-12 of the extent, and twice the rounding error of points, which is
+            8 units in the last place of the largest coordinate; half a unit of the last decimal
+            digit, or of float32, where all coordinates have no more digits than that (at least 8
+            different values, whose last digit is mostly not zero, and a unit smaller than 1/20 of
+            the shortest edge of the border or 1e-5 of the extent). Deviations that are larger than
+            the tolerance are corners, however small the angle.
+
+        Raises
+        ------
+        DomainError
+            It is no mesh of a domain, or the tolerance is negative, or so large that sides meet.
         """
         from .outline import domain_of_mesh
 
-        return domain_of_mesh(mesh, corner_angle)
+        return domain_of_mesh(mesh, corner_angle, straight_tolerance)
 
     def tag_named(self, name: str) -> int:
         """The tag of a boundary or line by its name, or a `DomainError`."""

@@ -29,6 +29,7 @@ def frozen_domain(domain: Domain, mesh: Mesh, names: Iterable[str]) -> Domain:
     rest = ~np.isin(domain.segment_tags, numbers)
     build = _of_curves if domain.curved.curves else _of_segments
     out = build(domain, edges, rest).with_frozen(*names)
+    out.corners_found = domain.corners_found
     for pair in domain.periodic:
         tied = periodic_pair(out, pair.first, pair.second, pair.motion, None)
         out.periodic = (*out.periodic, tied)

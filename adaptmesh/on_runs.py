@@ -36,11 +36,14 @@ def tolerance_of(domain: Domain) -> float:
     """How far off a line of the domain its vertices may be.
 
     Points along slanted segments are rounded to the nearest coordinates: that is `TOLERANCE` times
-    the diameter of the domain plus a few units in the last place of the largest coordinate.
+    the diameter of the domain plus a few units in the last place of the largest coordinate; and
+    those of a mesh that the domain was found from may be off by what that took for straight.
     """
     diameter = float(np.hypot(*np.ptp(domain.points, axis=0)))
     largest = float(np.abs(domain.points).max())
-    return TOLERANCE * diameter + 8 * float(np.finfo(float).eps) * largest
+    rounding = TOLERANCE * diameter + 8 * float(np.finfo(float).eps) * largest
+    found = domain.corners_found
+    return rounding if found is None else max(rounding, found.tolerance)
 
 
 def places_on_runs(domain: Domain, points: Floats, tolerance: float) -> tuple[Index, Floats, Index]:

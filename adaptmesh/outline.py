@@ -17,28 +17,47 @@ from .invariants.subject import Finding, Subject, edge_keys
 from .mesh import Mesh
 from .parts import hole_points, region_points, regions_beside
 from .smoothed import smooth_curves
+from .straight_sides import Straightness, needed_corners
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
-# Vertices nearer than this share of the extent of the mesh to a straight line lie on it: about what
-# rounding and text files of 12 digits leave of a straight boundary.
-STRAIGHT = 1e-12
 
-
-def domain_of_mesh(mesh: Mesh, corner_angle: float | None = None) -> Domain:
+def domain_of_mesh(
+    mesh: Mesh, corner_angle: float | None = None, straight_tolerance: float | None = None
+) -> Domain:
     """Corners, segments, holes, regions and names of a mesh.
 
     Chains of constrained edges with one name, between the same two regions, become one segment
-    where they are straight (to `STRAIGHT` of the extent); vertices on them are dropped. Curved
-    boundaries stay as the mesh has them, or become the curves of `smooth_curves`. Required vertices
-    stay points, and required edges frozen segments.
+    where they are straight, to a tolerance; vertices on them are dropped. Curved boundaries stay as
+    the mesh has them, or become the curves of `smooth_curves`. Required vertices stay points, and
+    required edges frozen segments.
+
+    The tolerance found from the digits of the coordinates is not used where it makes what is no
+    domain, such as sides that are nearer to each other than that.
     """
     check_is_mesh(mesh)
     if not len(mesh.triangles):
         raise DomainError("the mesh has no triangles, so it covers no domain")
     _refuse_what_is_no_mesh(mesh)
     edges, tags = with_interfaces(mesh)
+    if straight_tolerance is not None:
+        straight = Straightness.given(straight_tolerance)
+        return _domain(mesh, edges, tags, corner_angle, straight)
+    straight = Straightness.of(mesh.points, edges)
+    exact = Straightness.exact(mesh.points)
+    if straight.tolerance > exact.tolerance:
+        try:
+            return _domain(mesh, edges, tags, corner_angle, straight)
+        except DomainError:
+            pass
+    return _domain(mesh, edges, tags, corner_angle, exact)
+
+
+def _domain(
+    mesh: Mesh, edges: Ints, tags: Ints, corner_angle: float | None, straight: Straightness
+) -> Domain:
+    """The domain inside these edges, whose border is straight to a tolerance."""
     segments, segment_edges = [], []  # the latter: one of the edges on each
     curves: list[Curve] = []
     curve_edges: list[int] = []
@@ -47,15 +66,15 @@ def domain_of_mesh(mesh: Mesh, corner_angle: float | None = None) -> Domain:
     is_stop = np.zeros(len(mesh.points), bool)
     is_stop[mesh.required_points] = is_stop[edges[is_required]] = True
     degree = np.bincount(edges.ravel())
-    tolerance = STRAIGHT * float(np.ptp(mesh.points, axis=0).max())
+    tolerance = straight.tolerance
     beside = regions_beside(mesh.triangles, mesh.regions, edges, len(mesh.points))
     for chain, edge in _chains(edges, tags, np.sort(beside, axis=1), is_stop):
         is_ring = chain[0] == chain[-1] and degree[chain[0]] == 2 and not is_stop[chain[0]]
-        corners = _corners(mesh.points, chain, is_ring, tolerance)
+        corners = needed_corners(mesh.points, chain, is_ring, tolerance)
         segments += list(itertools.pairwise(corners))
         segment_edges += [edge] * (len(corners) - 1)
         if corner_angle is not None:
-            smooth = smooth_curves(mesh.points, chain, corners, corner_angle, is_ring)
+            smooth = smooth_curves(mesh.points, chain, corners, corner_angle, is_ring, tolerance)
             curves += smooth
             curve_edges += [edge] * len(smooth)
 
@@ -80,6 +99,7 @@ def domain_of_mesh(mesh: Mesh, corner_angle: float | None = None) -> Domain:
             corner_angle=0.0,  # every end of these curves is a corner
         )
         frozen = is_required[curve_edges][domain.curved.segment_curves]
+    domain.corners_found = straight.found(len(used), len(np.unique(edges)))
     return domain.with_frozen(segments=np.flatnonzero(frozen)) if frozen.any() else domain
 
 
@@ -176,36 +196,3 @@ def _chains(
                     break
                 e = next(other for other in at[chain[-1]] if other != e)
             yield chain, first
-
-
-def _corners(points: Floats, chain: list[int], is_ring: bool, tolerance: float) -> list[int]:
-    """The vertices of a chain that a polyline within the tolerance needs (Douglas and Peucker).
-
-    Its ends are among them, unless it is a ring that nothing else meets.
-    """
-    if is_ring:  # open it at an extreme point, which is a corner
-        ring = chain[:-1]
-        k = min(range(len(ring)), key=lambda i: tuple(points[ring[i]]))
-        chain = [*ring[k:], *ring[: k + 1]]
-    keep = {0, len(chain) - 1}
-    p = points[chain]
-    open_parts = [(0, len(chain) - 1)]
-    while open_parts:
-        i, j = open_parts.pop()
-        if j - i < 2:
-            continue
-        k = i + 1 + int(np.argmax(_distances(p[i + 1 : j], p[i], p[j])))
-        if _distances(p[k : k + 1], p[i], p[j])[0] > tolerance:
-            keep.add(k)
-            open_parts += [(i, k), (k, j)]
-    return [chain[k] for k in sorted(keep)]
-
-
-def _distances(p: Floats, a: Floats, b: Floats) -> Floats:
-    """Distances of points from a line, or from a point where the line has no direction."""
-    d, w = b - a, p - a
-    norm = float(np.hypot(*d))
-    if norm == 0.0:
-        return np.hypot(w[:, 0], w[:, 1])
-    out: Floats = np.abs(w[:, 0] * d[1] - w[:, 1] * d[0]) / norm
-    return out

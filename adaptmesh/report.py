@@ -103,6 +103,9 @@ class Report(Value):
         Those whose l is farthest from 1, by ratio; if not unit, with the reason, see `explain`.
     worst_triangles : tuple of WorstTriangle
         Those of least quality.
+    border : str
+        How many corners of the border were found, and to what tolerance, if the domain was found
+        from a mesh (see `Domain.of_mesh`); else empty.
     """
 
     length_rule: str
@@ -128,6 +131,7 @@ class Report(Value):
     quality_histogram: Histogram
     worst_edges: tuple[WorstEdge, ...]
     worst_triangles: tuple[WorstTriangle, ...]
+    border: str
 
     def as_dict(self) -> dict[str, Any]:
         """Everything in dicts, lists, numbers and strings, ready for JSON; infinity is None."""
@@ -221,7 +225,14 @@ def measure(mesh: Mesh, metric: Any) -> Report:
         quality_histogram=Histogram.of(np.maximum(quality, 0), QUALITY_BINS),
         worst_edges=edge_entries(mesh, edges, lengths, _smallest(ratio_to_unit(lengths)), reasons),
         worst_triangles=triangle_entries(mesh, quality, _smallest(quality), reasons),
+        border=_border(mesh),
     )
+
+
+def _border(mesh: Mesh) -> str:
+    """How the corners of the domain of a mesh were found."""
+    found = None if mesh.domain is None else mesh.domain.corners_found
+    return "" if found is None else str(found)
 
 
 def qualities(lengths: Floats, areas: Floats) -> Floats:

@@ -44,6 +44,8 @@ def as_renderable(report: Report) -> RenderableType:
         _worst(report),
         Text(f"lengths: {report.length_rule}", style="dim"),
     ]
+    if report.border:
+        parts.append(Text(f"border: {report.border}", style="dim"))
     return Padding(Group(*parts), (0, 0, 0, 1))
 
 

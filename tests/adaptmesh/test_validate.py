@@ -246,7 +246,7 @@ def square_domain(**changes):
     }
     domain |= changes
     curved = Curved.nothing(len(domain["points"]), len(domain["segments"]))
-    return SimpleNamespace(**domain, curved=curved)
+    return SimpleNamespace(**domain, curved=curved, corners_found=None)
 
 
 def square_mesh(n=3, tags=(1, 0, 2, 0), **changes) -> Mesh:
