@@ -15,6 +15,7 @@ __all__ = [
     "BudgetError",
     "DomainError",
     "FormatError",
+    "FormatWarning",
     "LoopError",
     "LoopInterrupted",
     "MetricError",
@@ -34,6 +35,10 @@ class BudgetError(AdaptmeshError):
 
 class FormatError(AdaptmeshError, OSError):
     """A file that cannot be read or written: which one, where, and why."""
+
+
+class FormatWarning(UserWarning):
+    """What of a file is passed over in reading, or cannot be kept in writing."""
 
 
 class TransferError(AdaptmeshError, ValueError):

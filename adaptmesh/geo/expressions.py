@@ -35,6 +35,11 @@ MOST_ITEMS = 500_000
 MOST_TOKENS = 1_000_000
 """Tokens that a script may have read again, in all its loops."""
 
+
+class NotReadError(FormatError):
+    """A statement or expression that is not known here; Gmsh may know it."""
+
+
 FUNCTIONS: dict[str, Callable[..., float]] = {
     "Acos": math.acos, "ArcCos": math.acos, "Asin": math.asin, "ArcSin": math.asin,
     "Atan": math.atan, "ArcTan": math.atan, "Atan2": math.atan2, "ArcTan2": math.atan2,
@@ -54,15 +59,13 @@ _BINARY: dict[str, tuple[int, Callable[[float, float], float]]] = {  # level: 0 
     "*": (5, operator.mul), "/": (5, operator.truediv), "%": (5, math.fmod),
 }  # fmt: skip
 
+_ENTITIES = ("Curve", "Curve Loop", "Surface", "Physical")
 _NEW = {
     "newp": ("Point",),
-    "newl": ("Curve",),
-    "newc": ("Curve",),
-    "newll": ("Curve Loop",),
-    "newcl": ("Curve Loop",),
-    "news": ("Surface",),
-    "newreg": ("Curve", "Curve Loop", "Surface", "Physical"),
+    **dict.fromkeys(("newl", "newc", "newll", "newcl", "news", "newreg"), _ENTITIES),
 }
+"""What the number next to the largest is that of; Gmsh counts all but points together, unless its
+option Geometry.OldNewReg is 0."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +81,7 @@ def tokens_of(text: str) -> list[Token]:
     while at < len(text):
         match = _TOKEN.match(text, at)
         if match is None:
-            raise FormatError(f"line {line}: {text[at : at + 20].split()[0]!r} cannot be read")
+            raise NotReadError(f"line {line}: {text[at : at + 20].split()[0]!r} cannot be read")
         kind, found = str(match.lastgroup), match.group()
         if kind == "unclosed":
             raise FormatError(f"line {line}: the comment that begins here has no */")
@@ -136,11 +139,11 @@ class Reader:
     def expect(self, *texts: str) -> Token:
         if not self.has(*texts):
             wanted = " or ".join(map(repr, texts))
-            raise self.error(f"{wanted} was expected, not {self.token.text!r}")
+            raise self.error(f"{wanted} was expected, not {self.token.text!r}", NotReadError)
         return self.next()
 
-    def error(self, message: str) -> FormatError:
-        return FormatError(f"line {self.token.line}: {message}")
+    def error(self, message: str, kind: type[FormatError] = FormatError) -> FormatError:
+        return kind(f"line {self.token.line}: {message}")
 
     # -- lists
 
@@ -266,7 +269,7 @@ class Reader:
             return float(token.text.lower().replace("d", "e"))
         if token.kind != "name":
             self.at -= 1
-            raise self.error(f"a number was expected, not {token.text!r}")
+            raise self.error(f"a number was expected, not {token.text!r}", NotReadError)
         if token.text in _NEW:
             return self.variables.new(token.text)
         if token.text in FUNCTIONS and self.has("(", "["):
@@ -278,7 +281,8 @@ class Reader:
                 raise self.error(f"{token.text} has no element {index:g}, only {len(values)}")
             return values[int(index)]
         if len(values) != 1:
-            raise self.error(f"{token.text} is a list of {len(values)}; a number was expected")
+            message = f"{token.text} is a list of {len(values)}; a number was expected"
+            raise self.error(message, NotReadError)
         return values[0]
 
     def _applied(self, name: str, values: list[float]) -> float:
@@ -290,5 +294,6 @@ class Reader:
     def look_up(self, name: str) -> list[float]:
         values = self.variables.values.get(name)
         if values is None:
-            raise self.error(f"{name!r} is neither a variable nor a function that can be read")
+            message = f"{name!r} is neither a variable nor a function that can be read"
+            raise self.error(message, NotReadError)
         return values

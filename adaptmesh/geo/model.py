@@ -27,12 +27,17 @@ from ..drawings.drawing import JOINED
 from ..errors import DomainError, FormatError
 from ..io.files import read_text
 from ..runs import places_of
+from . import by_gmsh
+from .expressions import NotReadError
+from .faces import seeds_of
 from .script import CURVES, Definition, Script, script_of
 
 Floats = NDArray[np.float64]
 
 SAME_RADIUS = 1e-6
 """The ends of a Circle have the same distance from its centre, to this share."""
+
+_HALF = 4e-15  # radians by which half a turn may be off by rounding
 
 _SAMPLES = np.linspace(0, 1, 33)  # on each curve, for polygons in which seeds are found
 
@@ -62,8 +67,23 @@ def read_geo(path: str | os.PathLike[str]) -> Domain:
     text = read_text(path)
     try:
         return _Model.of(script_of(text)).domain()
+    except NotReadError as error:
+        return _by_gmsh(path, error)
     except FormatError as error:
         raise FormatError(f"{path}, {error}") from None
+
+
+def _by_gmsh(path: Path, error: FormatError) -> Domain:
+    """The domain as Gmsh has it, if it is installed; else the error says that it would help."""
+    if not by_gmsh.is_installed():
+        raise FormatError(
+            f"{path}, {error}. What this reader does not know is opened by Gmsh, if it is there: "
+            'pip install "adaptmesh-metric[gmsh]"'
+        ) from None
+    try:
+        return by_gmsh.read_by_gmsh(path)
+    except FormatError as of_gmsh:
+        raise FormatError(f"{path}, {error}. By Gmsh: {of_gmsh}") from None
 
 
 @dataclass
@@ -114,7 +134,7 @@ class _Model:
             numbers = self._known(d, self.surfaces, "surface")
             self._name(self.surface_names, self.surface_tags, d, numbers)
         elif d.kind != "Physical Point":
-            raise FormatError(f"line {d.line}: {d.kind} cannot be read")
+            raise NotReadError(f"line {d.line}: {d.kind} cannot be read")
 
     def _points_of(self, d: Definition) -> Floats:
         return np.array([self.points[k] for k in self._known(d, self.points, "point")])
@@ -178,7 +198,8 @@ class _Model:
             name: np.flatnonzero(np.isin(owner, numbers))
             for name, numbers in self.curve_names.items()
         }
-        holes, regions = self._seeds() if self.surfaces else ("nesting", {})
+        faces = {number: self._face(number) for number in self.surfaces}
+        holes, regions = seeds_of(faces, self.surface_names) if faces else ("nesting", {})
         isolated = [self.points[k] for k in self.inner_points if k in self.points]
         return Domain.from_curves(
             curves,
@@ -198,37 +219,17 @@ class _Model:
         used = {k for loop in loops for k in self.loops[loop]} | set(self.inner_curves)
         return sorted(used)
 
-    def _seeds(self) -> tuple[list[Floats], dict[str, list[Floats]]]:
-        """Points in what the surfaces leave out, and in each surface with a name."""
-        import shapely
-
-        try:
-            faces = {number: self._face(number) for number in self.surfaces}
-            union = shapely.union_all(list(faces.values()))
-            filled = shapely.union_all(
-                [
-                    shapely.Polygon(part.exterior)
-                    for part in shapely.get_parts(union)
-                    if part.geom_type == "Polygon"
-                ]
-            )
-            holes = _parts_inside(filled.difference(union))
-        except shapely.errors.GEOSException as error:
-            raise DomainError(f"a curve loop crosses itself or another: {error}") from None
-        regions = {
-            name: [seed for k in numbers for seed in _parts_inside(faces[k])]
-            for name, numbers in self.surface_names.items()
-        }
-        return holes, regions
-
     def _face(self, number: int) -> Any:
         """A surface as a polygon of samples: its first loop without the others."""
         import shapely
 
         rings = [self._ring(number, loop) for loop in self.surfaces[number]]
         face = shapely.Polygon(rings[0].exterior)
-        for hole in rings[1:]:
-            face = face.difference(hole)
+        try:
+            for hole in rings[1:]:
+                face = face.difference(hole)
+        except shapely.errors.GEOSException as error:
+            raise DomainError(f"a curve loop crosses itself or another: {error}") from None
         return face
 
     def _ring(self, surface: int, loop: int) -> Any:
@@ -275,15 +276,6 @@ def _not_closed(surface: int, loop: int, place: Floats) -> FormatError:
         f"curve loop {loop} of surface {surface} is not one closed line: no other curve of it goes "
         f"on from ({x:g}, {y:g})"
     )
-
-
-def _parts_inside(area: Any) -> list[Floats]:
-    """A point in each part of an area."""
-    import shapely
-
-    parts = shapely.get_parts(area)
-    inner = shapely.point_on_surface(parts[~shapely.is_empty(parts)])
-    return list(shapely.get_coordinates(inner))
 
 
 def _point(d: Definition) -> Floats:
@@ -349,8 +341,11 @@ def _ellipse(p: Floats, d: Definition) -> list[Curve]:
 
 
 def _shorter_way(start: Floats, end: Floats) -> tuple[float, float]:
+    """Angles of both ends; half a turn is anticlockwise, as in Gmsh."""
     first, last = np.arctan2(start[1], start[0]), np.arctan2(end[1], end[0])
     turn = (last - first + np.pi) % (2 * np.pi) - np.pi
+    if np.pi + turn < _HALF:
+        turn += 2 * np.pi
     return float(first), float(first + turn)
 
 

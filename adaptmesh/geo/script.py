@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ..errors import FormatError
-from .expressions import Reader, Token, Variables, tokens_of
+from .expressions import NotReadError, Reader, Token, Variables, tokens_of
 
 CURVES = ("Line", "Circle", "Ellipse", "Spline", "BSpline", "Bezier")
 _RENAMED = {"Line Loop": "Curve Loop", "Physical Line": "Physical Curve", "Ellipsis": "Ellipse"}
@@ -77,7 +77,7 @@ class _Statements(Reader):
             return
         token = self.token
         if token.kind != "name":
-            raise self.error(f"a statement was expected, not {token.text!r}")
+            raise self.error(f"a statement was expected, not {token.text!r}", NotReadError)
         word = token.text
         if word == "For":
             self._for()
@@ -89,6 +89,9 @@ class _Statements(Reader):
             self._define_constant()
         elif self._is_assignment():
             self._assign()
+        elif word == "Geometry.OldNewReg":
+            message = "Geometry.OldNewReg, another way to count, cannot be read"
+            raise self.error(message, NotReadError)
         elif word.split(".")[0] in PASSED_OVER:
             self._pass_over()
         else:
@@ -121,7 +124,7 @@ class _Statements(Reader):
         elif len(old) == len(values) == 1:
             self.variables.values[name] = [self._changed(old[0], sign, values[0])]
         else:
-            raise self.error(f"{sign} is for numbers, not for lists")
+            raise self.error(f"{sign} is for numbers, not for lists", NotReadError)
 
     def _changed(self, old: float, sign: str, new: float) -> float:
         if sign == "/=":
@@ -249,17 +252,17 @@ class _Statements(Reader):
             self._embed(kind)
             return
         if not self.has("("):
-            raise FormatError(f"line {line}: {kind!r} cannot be read; see docs/files for what can")
+            raise NotReadError(f"line {line}: {kind!r} cannot be read; see docs/files for what can")
         self.next()
         name, number = self._tag(kind)
         self.expect(")")
         sign = self.expect("=", "+=").text
         values = tuple(self.braced())
         if self.accept("Using"):
-            raise FormatError(f"line {line}: {kind} Using cannot be read")
+            raise NotReadError(f"line {line}: {kind} Using cannot be read")
         self.expect(";")
         if sign == "+=" and not kind.startswith("Physical"):
-            raise FormatError(f"line {line}: only physical groups are added to")
+            raise NotReadError(f"line {line}: only physical groups are added to")
         if len(self.script.definitions) > MOST_DEFINED + len(self.tokens):
             raise FormatError(f"line {line}: loops define more than {MOST_DEFINED:,} entities")
         self.script.definitions.append(Definition(kind, number, values, line, name))
@@ -287,10 +290,10 @@ class _Statements(Reader):
         """Point{1, 2} In Surface{3}; the surface does not matter in a plane."""
         what = {"Line": "Curve"}.get(kind, kind)
         if what not in ("Point", "Curve"):
-            raise self.error(f"{kind}{{...}} cannot be read")
+            raise self.error(f"{kind}{{...}} cannot be read", NotReadError)
         numbers = tuple(int(x) for x in self.braced())
         if not self.accept("In"):
-            raise self.error(f"{kind}{{...}} cannot be read")
+            raise self.error(f"{kind}{{...}} cannot be read", NotReadError)
         self.expect("Surface")
         self.braced()
         self.expect(";")

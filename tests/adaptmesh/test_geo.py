@@ -5,6 +5,7 @@ import pytest
 
 from adaptmesh import generate, read_domain
 from adaptmesh.errors import AdaptmeshError, DomainError, FormatError
+from adaptmesh.geo import by_gmsh
 from adaptmesh.geo.model import _Model
 from adaptmesh.geo.script import script_of
 
@@ -180,7 +181,8 @@ def test_deep_nesting_ends(tmp_path):
         read_domain(path)
 
 
-def test_scripts_cut_anywhere(tmp_path):
+def test_scripts_cut_anywhere(tmp_path, monkeypatch):
+    monkeypatch.setattr(by_gmsh, "is_installed", lambda: False)
     for size in range(0, len(PLATE), 23):
         path = written(tmp_path, PLATE[:size])
         try:
@@ -196,3 +198,25 @@ def test_a_loop_without_a_step_does_not_count_down(tmp_path):
         "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 1};\n"
     )
     assert read_domain(tmp_path / "a.geo").area == 2  # n is 4
+
+
+def test_half_a_turn_is_anticlockwise(tmp_path):
+    path = written(
+        tmp_path,
+        "Point(1) = {0, 0, 0}; Point(2) = {-1, 0, 0}; Point(3) = {1, 0, 0}; Point(4) = {0, 2, 0};\n"
+        "Circle(1) = {2, 1, 3}; Line(2) = {3, 4}; Line(3) = {4, 2};",
+    )  # by Gmsh: the lower half
+    assert read_domain(path).area == pytest.approx(2 + np.pi / 2)
+
+
+def test_new_numbers_count_all_but_points_together():
+    text = (
+        "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(7) = {1, 1, 0};\n"
+        "Line(1) = {1, 2}; Line(2) = {2, 7}; Line(3) = {7, 1}; b = newll; Curve Loop(b) = {1:3};\n"
+        "s = news; Plane Surface(s) = {b}; Physical Curve(40) = {1};\n"
+        "Point(100) = {b, s, 0}; Point(101) = {newl, newll, 0}; Point(102) = {news, newreg, 0};\n"
+        "Point(newp) = {0, 0, 0};"
+    )
+    points = _Model.of(script_of(text)).points
+    assert [points[k].tolist() for k in (100, 101, 102)] == [[4, 5], [41, 41], [41, 41]]
+    assert max(points) == 103

@@ -1,0 +1,265 @@
+"""Scripts opened by Gmsh itself, for all of its language: curves, surfaces and physical groups.
+
+Gmsh works in a process of its own (`gmsh_program`), on a script that reaches no other file
+(`gmsh_script`), with bounds on time and memory.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..curved import extent_of
+from ..curves import Arc, BSpline, Curve, Line
+from ..domain import Domain
+from ..drawings.drawing import JOINED, affine_arc
+from ..errors import FormatError, FormatWarning
+from ..runs import places_of
+from .faces import seeds_of
+from .gmsh_script import MENTIONED, SafeScript, safe_script
+
+Floats = NDArray[np.float64]
+
+SECONDS = 60
+"""Of processor time that a script may take in Gmsh."""
+
+MEMORY = 4 << 30
+"""Bytes of address space that Gmsh may take."""
+
+FLAT = 1e-9
+"""Share of the extent by which heights of a plane domain may differ."""
+
+_SAMPLES = np.linspace(0, 1, 33)  # on each curve, for polygons in which seeds are found
+_MIDDLE = np.array([0.25, 0.5, 0.75])  # where curves with the same ends are compared
+
+
+def is_installed() -> bool:
+    """Whether the package gmsh can be imported."""
+    return importlib.util.find_spec("gmsh") is not None
+
+
+def read_by_gmsh(path: Path) -> Domain:
+    """Read a domain from a script, as Gmsh understands it; a `FormatError` says what is wrong."""
+    script = safe_script(path)
+    said = _opened(path, script)
+    left_out = {word: line for word, line in script.left_out.items() if word in MENTIONED}
+    if left_out:
+        words = ", ".join(f"{word} (line {line})" for word, line in left_out.items())
+        warnings.warn(
+            f"{path}: passed over {words}: what says nothing about the domain",
+            FormatWarning,
+            stacklevel=2,
+        )
+    return _Model.of(path, said).domain()
+
+
+def _opened(path: Path, script: SafeScript) -> dict[str, Any]:
+    """What the program says about a script."""
+    program = Path(__file__).with_name("gmsh_program.py").read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "script.geo"
+        file.write_text(script.text, encoding="utf-8", newline="\n")
+        try:
+            done = subprocess.run(
+                [sys.executable, "-c", program, str(file), str(SECONDS), str(MEMORY)],
+                cwd=folder,
+                env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                timeout=2 * SECONDS,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            raise FormatError(f"{path}: Gmsh has not read it after {2 * SECONDS} s") from None
+        except OSError as error:
+            raise FormatError(f"{path}: Gmsh cannot be started: {error}") from None
+    try:
+        said: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    except (ValueError, IndexError):
+        raise FormatError(
+            f"{path}: Gmsh ended without a result (exit code {done.returncode}): the script may "
+            f"take more than {SECONDS} s or {MEMORY >> 30} GB, or be more than Gmsh bears"
+        ) from None
+    if said["error"]:
+        raise FormatError(f"{path}: {said['error'].replace(str(file), path.name)}")
+    return said
+
+
+@dataclass
+class _Model:
+    """What Gmsh has made of a script, by tag."""
+
+    path: Path
+    points: dict[int, Floats]
+    curves: dict[int, Curve]
+    surfaces: dict[int, dict[str, list[int]]]
+    groups: list[tuple[int, int, str, list[int]]]
+
+    @classmethod
+    def of(cls, path: Path, said: Mapping[str, Any]) -> _Model:
+        if said["volumes"]:
+            raise FormatError(
+                f"{path}: it has {said['volumes']} volumes; a domain is plane: leave out what "
+                "makes them (extrusions of surfaces, boxes, ...)"
+            )
+        _check_flat(path, said)
+        model = cls(
+            path,
+            {int(tag): np.array(p[:2]) for tag, p in said["points"].items()},
+            {int(tag): _curve(path, int(tag), c) for tag, c in said["curves"].items()},
+            {int(tag): surface for tag, surface in said["surfaces"].items()},
+            [(dim, tag, name or str(tag), entities) for dim, tag, name, entities in said["groups"]],
+        )
+        if said["periodic"]:
+            listed = ", ".join(f"{a} and {b}" for a, b in said["periodic"])
+            warnings.warn(
+                f"{path}: curves {listed} are periodic there; say so of the domain with "
+                "Domain.with_periodic",
+                FormatWarning,
+                stacklevel=4,
+            )
+        return model
+
+    def domain(self) -> Domain:
+        if not self.curves:
+            raise FormatError(f"{self.path}: it has no curves: there is nothing to mesh")
+        inside = {t for s in self.surfaces.values() for t in s["curves_inside"]}
+        bounding = {t for s in self.surfaces.values() for t in s["curves"]}
+        used = sorted(inside | bounding) if self.surfaces else sorted(self.curves)
+        number_of, kept = self._merged(used)
+        curves = [self.curves[t] for t in kept]
+        names, tags = self._names(number_of)
+        faces = {tag: self._face(tag) for tag in self.surfaces}
+        groups = {name: members for dim, _, name, members in self.groups if dim == 2}
+        holes, regions = seeds_of(faces, groups) if faces else ("nesting", {})
+        points = {t for s in self.surfaces.values() for t in s["points_inside"]}
+        return Domain.from_curves(
+            curves,
+            names=names,
+            tags=tags,
+            holes=holes,
+            regions=regions,
+            region_tags={name: tag for dim, tag, name, _ in self.groups if dim == 2},
+            points=[self.points[t] for t in sorted(points)],
+            join_tolerance=JOINED * extent_of(curves),
+        )
+
+    def _merged(self, used: list[int]) -> tuple[dict[int, int], list[int]]:
+        """The number of each curve, where curves that lie on one another are one."""
+        curves = [self.curves[t] for t in used]
+        tolerance = JOINED * extent_of(curves)
+        ends = np.array([end for c in curves for end in (c.start, c.end)])
+        places = places_of(ends, tolerance).reshape(-1, 2)
+        number_of: dict[int, int] = {}
+        kept: list[int] = []
+        alike: dict[tuple[int, ...], list[int]] = {}
+        for tag, curve, place in zip(used, curves, places.tolist(), strict=True):
+            same = alike.setdefault(tuple(sorted(place)), [])
+            twin = next((t for t in same if _coincide(curve, self.curves[t], tolerance)), None)
+            if twin is None:
+                same.append(tag)
+                number_of[tag] = len(kept)
+                kept.append(tag)
+            else:
+                number_of[tag] = number_of[twin]
+        return number_of, kept
+
+    def _names(self, number_of: Mapping[int, int]) -> tuple[dict[str, list[int]], dict[str, int]]:
+        """Curves of each physical group; of one in several groups, a name for all of these."""
+        groups: dict[int, list[str]] = {}
+        tags = {}
+        for dim, tag, name, members in self.groups:
+            if dim == 1:
+                tags[name] = tag
+                for number in sorted({number_of[m] for m in members if m in number_of}):
+                    groups.setdefault(number, []).append(name)
+        names: dict[str, list[int]] = {}
+        for number, of in groups.items():
+            names.setdefault("|".join(of), []).append(number)
+        several = sorted(name for name in names if name not in tags)
+        if several:
+            warnings.warn(
+                f"{self.path}: curves that are in several physical groups bear the names of all: "
+                f"{', '.join(several)}",
+                FormatWarning,
+                stacklevel=4,
+            )
+        return names, {name: tag for name, tag in tags.items() if name in names}
+
+    def _face(self, tag: int) -> Any:
+        """A surface as a polygon of samples: what an odd number of its boundaries encloses."""
+        import shapely
+
+        curves = [self.curves[t] for t in self.surfaces[tag]["curves"]]
+        lines = [np.array([c.start, c.end]) if c.is_straight else c.point(_SAMPLES) for c in curves]
+        if not lines:
+            raise FormatError(f"{self.path}: surface {tag} has no boundary")
+        ends = np.array([line[k] for line in lines for k in (0, -1)])
+        place = places_of(ends, JOINED * float(np.ptp(np.concatenate(lines), axis=0).max()))
+        _, first = np.unique(place, return_index=True)
+        for k, line in enumerate(lines):
+            line[0], line[-1] = ends[first[place[2 * k]]], ends[first[place[2 * k + 1]]]
+        face = shapely.build_area(shapely.MultiLineString(lines))
+        if face.is_empty:
+            raise FormatError(f"{self.path}: the boundary of surface {tag} is not closed")
+        return face
+
+
+def _coincide(a: Curve, b: Curve, tolerance: float) -> bool:
+    """Whether curves with the same ends are the same, perhaps backwards."""
+    p, q = a.point(_MIDDLE), b.point(_MIDDLE)
+    return bool((np.abs(p - q) <= tolerance).all() or (np.abs(p - q[::-1]) <= tolerance).all())
+
+
+def _check_flat(path: Path, said: Mapping[str, Any]) -> None:
+    """Refuse what does not lie in one plane z = constant."""
+    rows = [[tag, p] for tag, p in said["points"].items()]
+    for tag, curve in said["curves"].items():
+        places = curve.get("points") or curve.get("control") or []
+        rows += [[f"of curve {tag}", p] for p in places]
+    if not rows:
+        return
+    xyz = np.array([p for _, p in rows])
+    extent = float(np.ptp(xyz, axis=0).max())
+    off = np.abs(xyz[:, 2] - xyz[0, 2])
+    if off.max() > FLAT * extent:
+        what, (x, y, z) = rows[int(off.argmax())]
+        raise FormatError(
+            f"{path}: it is not plane: point {what} is ({x:g}, {y:g}, {z:g}); all have to lie at "
+            "one height z"
+        )
+
+
+def _curve(path: Path, tag: int, said: Mapping[str, Any]) -> Curve:
+    kind = said["kind"]
+    if kind == "line":
+        a, b = np.array(said["points"])[:, :2]
+        return Line(a, b)
+    if kind == "ellipse":
+        return _arc(said)
+    if kind == "cubics":
+        knots = np.concatenate([[0, 0], np.repeat(said["knots"], 2), [1, 1]])
+        return BSpline(np.array(said["control"])[:, :2], 3, knots)
+    raise FormatError(f"{path}: curve {tag} is a {kind}, without geometry; it cannot be read")
+
+
+def _arc(said: Mapping[str, Any]) -> Curve:
+    """An arc of a circle through three of its points, one of an ellipse by conjugate radii."""
+    first, second = (np.array(said[k])[:2] for k in ("first", "second"))
+    a, b = np.hypot(*first), np.hypot(*second)
+    is_circle = abs(a - b) <= 1e-12 * a and abs(first @ second) <= 1e-12 * a * b
+    if is_circle and said["turn"] < 2 * np.pi:
+        return Arc.through(*np.array(said["points"])[:, :2])
+    return affine_arc(np.array(said["centre"])[:2], first, second, 0.0, said["turn"])
