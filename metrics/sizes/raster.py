@@ -124,7 +124,7 @@ class Raster(ControlSpace):
             If rasterio is not installed, the file cannot be read, or the raster is rotated.
         """
         try:
-            import rasterio  # type: ignore[import-not-found, unused-ignore]
+            import rasterio
         except ImportError as error:
             raise MetricError(
                 f"{os.fspath(path)} cannot be read without rasterio: python -m pip install rasterio"
