@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from .errors import FormatError
 from .mesh import Mesh
 from .solved import Solved
 from .value import Value
@@ -109,7 +110,17 @@ class Iteration(Value):
     @property
     def snapshot(self) -> Snapshot:
         """The arrays; read from disk if they are only there."""
-        return self.kept.read() if isinstance(self.kept, OnDisk) else self.kept
+        if not isinstance(self.kept, OnDisk):
+            return self.kept
+        snapshot = self.kept.read()
+        mesh = snapshot.mesh
+        if (len(mesh.points), len(mesh.triangles)) != (self.n_points, self.n_triangles):
+            raise FormatError(
+                f"{self.kept.path}: is damaged, or of another history: its mesh has "
+                f"{len(mesh.points)} points and {len(mesh.triangles)} triangles, not "
+                f"{self.n_points} and {self.n_triangles}"
+            )
+        return snapshot
 
     @property
     def mesh(self) -> Mesh:

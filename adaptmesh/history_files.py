@@ -9,18 +9,23 @@ folder/
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
+
+from metrics import tensor
 
 from .errors import FormatError
 from .history import History, Iteration, OnDisk, Seconds, Snapshot
+from .io.bounded import read_json
 from .io.files import read_bytes, replace_files
-from .solved import Solved
-from .stored import damage_named, decoded, encoded
+from .mesh import Mesh
+from .notes import Notes
+from .solved import UNNAMED, Solved
+from .stored import check_fields, damage_named, decoded, encoded, take
 from .value import FrozenMapping
 
 if TYPE_CHECKING:
@@ -95,16 +100,16 @@ def load(folder: Path, domain: Domain | None) -> History:
     if not path.exists():
         raise FormatError(f"{folder}: there is no history here ({LIST} is missing)")
     with damage_named(path):
-        content = json.loads(read_bytes(path))
-        if content["version"] != VERSION:
-            raise FormatError(f"{path}: version {content['version']}; this reads {VERSION}")
-        iterations = tuple(_iteration(n, folder, domain) for n in content["iterations"])
+        content = read_list(path, VERSION)
+        iterations = tuple(
+            _iteration(Notes(n), folder, domain) for n in content.items("iterations")
+        )
         history = History(
             iterations,
-            content["reason"],
-            bool(content["converged"]),
-            content["options"],
-            int(content.get("options_since", 0)),
+            content.text("reason"),
+            content.flag("converged"),
+            content.texts("options"),
+            content.count("options_since") if "options_since" in content else 0,
         )
     for k, iteration in enumerate(history):
         file = _path(folder, iteration)
@@ -113,14 +118,34 @@ def load(folder: Path, domain: Domain | None) -> History:
     return history
 
 
+def read_list(path: Path, version: int) -> Notes:
+    """What the list of a history says, if it is of that version."""
+    content = Notes(read_json(read_bytes(path)))
+    if content.count("version") != version:
+        raise FormatError(f"it is of version {content.count('version')}; this reads {version}")
+    return content
+
+
 def read_snapshot(path: Path, domain: Domain | None) -> Snapshot:
     """The arrays of one iteration."""
     mesh, arrays, notes = decoded(path, domain)
     with damage_named(path):
-        fields = {name: arrays[f"field_{k}"] for k, name in enumerate(notes["fields"])}
-        given = arrays["given"] if notes["metric_was_given"] else None
-        solved = Solved(FrozenMapping(fields), notes["is_bare"], given, notes["errors"])
-        return Snapshot(mesh, solved, arrays["metric"])
+        fields = {str(n): take(arrays, f"field_{k}") for k, n in enumerate(notes.items("fields"))}
+        check_fields(fields, mesh)
+        is_bare = notes.flag("is_bare")
+        if is_bare and list(fields) != [UNNAMED]:
+            raise FormatError(f"the fields {list(fields)} are not one without a name")
+        given = _metric(arrays, "given", mesh) if notes.flag("metric_was_given") else None
+        solved = Solved(FrozenMapping(fields), is_bare, given, notes.reals("errors"))
+        return Snapshot(mesh, solved, _metric(arrays, "metric", mesh))
+
+
+def _metric(arrays: dict[str, NDArray[Any]], name: str, mesh: Mesh) -> NDArray[np.float64]:
+    metric = take(arrays, name)
+    if metric.shape != (len(mesh.points), 3) or metric.dtype != np.float64:
+        raise FormatError(f"a metric is {metric.dtype} of shape {metric.shape}")
+    tensor.pack(metric, points=mesh.points)  # a check
+    return metric
 
 
 def _encoded(snapshot: Snapshot) -> bytes:
@@ -149,16 +174,15 @@ def _numbers(iteration: Iteration) -> dict[str, Any]:
     }
 
 
-def _iteration(numbers: Mapping[str, Any], folder: Path, domain: Domain | None) -> Iteration:
-    number = int(numbers["number"])
-    unit = numbers["unit_fraction"]
+def _iteration(numbers: Notes, folder: Path, domain: Domain | None) -> Iteration:
+    number = numbers.count("number")
     return Iteration(
         number=number,
-        n_points=int(numbers["n_points"]),
-        n_triangles=int(numbers["n_triangles"]),
-        errors=FrozenMapping({str(k): float(v) for k, v in numbers["errors"].items()}),
-        unit_fraction=np.nan if unit is None else float(unit),
-        seconds=Seconds(**numbers["seconds"]),
+        n_points=numbers.count("n_points"),
+        n_triangles=numbers.count("n_triangles"),
+        errors=FrozenMapping(numbers.reals("errors")),
+        unit_fraction=np.nan if numbers.is_null("unit_fraction") else numbers.real("unit_fraction"),
+        seconds=numbers.record("seconds", Seconds),
         kept=OnDisk(folder / _name(number), domain),
     )
 

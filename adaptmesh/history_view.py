@@ -35,7 +35,7 @@ def as_renderable(history: History) -> RenderableType:
     """The table for a rich console."""
     table = Table(box=None, header_style="bold", padding=(0, 2, 0, 0))
     for heading in ("", "vertices", "triangles", *history.errors, "unit edges"):
-        table.add_column(heading, justify="right")
+        table.add_column(Text(heading), justify="right")  # a text: names are no markup
     for heading in ("adapt", "transfer", "solve", "metric"):
         table.add_column(f"{heading} s", justify="right", style="dim")
     names = list(history.errors)

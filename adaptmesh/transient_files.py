@@ -8,17 +8,18 @@ folder/
 
 from __future__ import annotations
 
-import itertools
 import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from .errors import FormatError
 from .history import Seconds
-from .history_files import make
-from .io.files import read_bytes, replace_files
-from .stored import damage_named, decoded, encoded
+from .history_files import make, read_list
+from .io.files import replace_files
+from .stored import check_fields, damage_named, decoded, encoded, take
 from .transient_history import Fields, Interval, TransientHistory
 from .value import FrozenMapping
 
@@ -54,17 +55,22 @@ def load(folder: Path, domain: Domain | None) -> TransientHistory:
     if not path.exists():
         raise FormatError(f"{folder}: there is no history in time here ({LIST} is missing)")
     with damage_named(path):
-        content = json.loads(read_bytes(path))
-        if content["version"] != VERSION:
-            raise FormatError(f"{path}: version {content['version']}; this reads {VERSION}")
-        counts = [int(n) for n in content["intervals"]]
-        options = {str(k): str(v) for k, v in content.get("options", {}).items()}
-    names = [[_name(k, number) for number in range(n)] for k, n in enumerate(counts)]
-    for name in itertools.chain(*names):
-        if not (folder / name).exists():
-            raise FormatError(f"{path}: {name} is missing")
+        content = read_list(path, VERSION)
+        counts = content.counts("intervals")
+        options = content.texts("options") if "options" in content else {}
+    names = [_names(path, sweep, count) for sweep, count in enumerate(counts)]
     sweeps = tuple(tuple(_interval(folder / name, domain) for name in sweep) for sweep in names)
     return TransientHistory(sweeps, options)
+
+
+def _names(path: Path, sweep: int, count: int) -> list[str]:
+    """The files of a sweep, of which the first that is missing is named."""
+    out: list[str] = []
+    while len(out) < count:
+        out.append(_name(sweep, len(out)))
+        if not (path.parent / out[-1]).exists():
+            raise FormatError(f"{path}: {out[-1]} is missing")
+    return out
 
 
 def _write_list(history: TransientHistory, folder: Path) -> None:
@@ -102,15 +108,22 @@ def _interval(path: Path, domain: Domain | None) -> Interval:
     mesh, arrays, notes = decoded(path, domain)
     with damage_named(path):
         mappings = {
-            name: FrozenMapping({n: arrays[f"{name}_{k}"] for k, n in enumerate(notes[name])})
+            name: FrozenMapping(
+                {str(n): take(arrays, f"{name}_{k}") for k, n in enumerate(notes.items(name))}
+            )
             for name in MAPPINGS
         }
+        for fields in mappings.values():
+            check_fields(fields, mesh)
+        times = take(arrays, "times")
+        if times.ndim != 1 or times.dtype != np.float64:
+            raise FormatError(f"the times are {times.dtype} of shape {times.shape}")
         return Interval(
-            start=float(notes["start"]),
-            end=float(notes["end"]),
+            start=notes.real("start"),
+            end=notes.real("end"),
             mesh=mesh,
-            times=arrays["times"],
-            seconds=Seconds(**notes["seconds"]),
-            is_bare=bool(notes["is_bare"]),
+            times=times,
+            seconds=notes.record("seconds", Seconds),
+            is_bare=notes.flag("is_bare"),
             **mappings,
         )
