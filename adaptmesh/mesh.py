@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from metrics.measure import mesh_edges
 
+from . import _core
 from .mesh_arrays import frozen_integers, frozen_reals, numbers, rows
 from .value import FrozenMapping, Value
 
@@ -102,10 +103,15 @@ class Mesh(Value):
 
     @cached_property
     def areas(self) -> Floats:
-        """Area of each triangle, (m,)."""
+        """Area of each triangle, (m,), negative if clockwise; accurate however thin it is."""
         p = self.points[self.triangles]
         u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-        out: Floats = 0.5 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+        first, second = u[:, 0] * v[:, 1], u[:, 1] * v[:, 0]
+        out: Floats = 0.5 * (first - second)
+        # Where the products cancel, what is left is mostly their rounding.
+        thin = 8 * np.abs(out) < np.abs(first) + np.abs(second)
+        if thin.any():
+            out[thin] = _core.triangle_areas(p[thin].reshape(-1, 6))
         return out
 
     def edges_named(self, name: str) -> Ints:

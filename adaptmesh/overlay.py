@@ -52,12 +52,13 @@ class Overlay:
 
     def __init__(self, old_mesh: Mesh, new_mesh: Mesh, *, outside: float = OUTSIDE) -> None:
         self.old_mesh, self.new_mesh = old_mesh, new_mesh
-        self._core = _core.Overlay(located(old_mesh, "old"), located(new_mesh, "new"))
-        self._first, olds, shares = self._core.pairs()
+        self._core = _core.Overlay(
+            located(old_mesh, "old"), old_mesh.areas, located(new_mesh, "new"), new_mesh.areas
+        )
+        self._first, olds, self.areas = self._core.pairs()
         counts = np.diff(self._first)
         news = np.repeat(np.arange(len(new_mesh.triangles), dtype=np.int32), counts)
         self.pairs: Ints = np.stack([olds, news], axis=1)
-        self.areas: Floats = shares * old_mesh.areas[olds]
         if not len(olds):
             raise TransferError(f"the meshes do not overlap: {old_mesh!r} and {new_mesh!r}")
         self._check_distances(outside)
@@ -115,15 +116,19 @@ class Overlay:
         """Fields of one space, all their columns at once."""
         old, new = fields[0].space, Space(self.new_mesh, fields[0].space.name)
         columns = np.concatenate([field.columns for field in fields], axis=1)
+        bounds = bounds_on_triangles(old, columns) if keep_bounds else None
         moments = self._core.moments(
-            columns, old.nodes_of_triangles, new.nodes_of_triangles, new.size
+            columns,
+            old.nodes_of_triangles,
+            new.nodes_of_triangles,
+            new.size,
+            OUTSIDE,
+            *(bounds or (None, None)),
         )
         matrix = mass_matrix(new)
         projected = solve_mass(matrix, moments, new.degree)
-        if keep_bounds:
-            low, high = self._core.ranges(
-                *bounds_on_triangles(old, columns), new.nodes_of_triangles, new.size
-            )
+        if bounds is not None:
+            low, high = self._core.ranges(*bounds, new.nodes_of_triangles, new.size)
             projected = limited(new, matrix, moments, projected, low, high)
         ends = np.cumsum([field.columns.shape[1] for field in fields])[:-1]
         parts = np.split(projected, ends, axis=1)

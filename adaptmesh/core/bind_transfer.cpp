@@ -1,4 +1,9 @@
 // What carries fields from mesh to mesh, as Python sees it.
+#include <nanobind/stl/optional.h>
+
+#include <optional>
+
+#include "adaptmesh/core/accurate_area.hpp"
 #include "adaptmesh/core/bindings.hpp"
 #include "adaptmesh/core/moments.hpp"
 #include "adaptmesh/core/overlay.hpp"
@@ -36,20 +41,32 @@ nb::tuple locate(const Locator& locator, const Points& points) {
                           to_numpy(std::move(distances), {n}));
 }
 
-void make_overlay(Overlay* self, const Locator& older, const Locator& newer) {
+// Accurate areas of triangles whose corners are rows x0, y0, x1, y1, x2, y2.
+nb::object triangle_areas(const Table& corners) {
+    std::vector<double> areas(corners.shape(0));
+    for (std::size_t i = 0; i < areas.size(); ++i) {
+        const double* p = corners.data() + 6 * i;
+        areas[i] = 0.5 * adaptmesh::twice_area({p[0], p[1]}, {p[2], p[3]}, {p[4], p[5]});
+    }
+    const std::size_t n = areas.size();
+    return to_numpy(std::move(areas), {n});
+}
+
+void make_overlay(Overlay* self, const Locator& older, const Values& old_areas,
+                  const Locator& newer, const Values& new_areas) {
     SignalPoll poll;
     nb::gil_scoped_release release;
-    new (self) Overlay(older, newer, poll);
+    new (self) Overlay(older, old_areas.data(), newer, new_areas.data(), poll);
 }
 
 nb::tuple pairs(const Overlay& overlay) {
     const auto& first = overlay.first();
     std::vector<std::int64_t> starts(first.begin(), first.end());
     std::vector<std::int32_t> olds = overlay.olds();
-    std::vector<double> shares = overlay.shares();
+    std::vector<double> areas = overlay.areas();
     const std::size_t m = starts.size(), n = olds.size();
     return nb::make_tuple(to_numpy(std::move(starts), {m}), to_numpy(std::move(olds), {n}),
-                          to_numpy(std::move(shares), {n}));
+                          to_numpy(std::move(areas), {n}));
 }
 
 // The new triangles with the border of the old mesh, and where their centroids are in it.
@@ -69,15 +86,19 @@ nb::tuple at_border(const Overlay& overlay) {
 }
 
 nb::object moments(const Overlay& overlay, const Table& values, const Nodes& old_nodes,
-                   const Nodes& new_nodes, std::size_t size) {
+                   const Nodes& new_nodes, std::size_t size, double reach,
+                   const std::optional<Table>& low, const std::optional<Table>& high) {
+    const adaptmesh::BoundsOnTriangles bounds{low ? low->data() : nullptr,
+                                              high ? high->data() : nullptr};
     const std::size_t columns = values.shape(1);
     std::vector<double> out(size * columns, 0.0);
     {
         SignalPoll poll;
         nb::gil_scoped_release release;
         const auto compute = [&](auto degree) {
-            adaptmesh::moments<decltype(degree)>(overlay, values.data(), columns, old_nodes.data(),
-                                                 new_nodes.data(), out.data(), poll);
+            adaptmesh::Moments<decltype(degree)> all(overlay, values.data(), columns,
+                                                     old_nodes.data(), reach, bounds);
+            all.add_to(out.data(), new_nodes.data(), poll);
         };
         switch (new_nodes.shape(1)) {
             case 1:
@@ -113,15 +134,21 @@ void bind_transfer(nb::module_& m) {
         .def("__init__", &make_locator, nb::arg("points"), nb::arg("triangles"))
         .def("locate", &locate, nb::arg("points"),
              "Triangles (k,), barycentric coordinates (k, 3), distances from the mesh (k,).");
+    m.def(
+        "triangle_areas", &triangle_areas, nb::arg("corners"),
+        "Areas (m,) of triangles with corners (m, 6), to a small relative error if they are thin.");
     nb::class_<Overlay>(m, "Overlay", "Which triangles of two meshes overlap.")
-        .def("__init__", &make_overlay, nb::arg("older"), nb::arg("newer"), nb::keep_alive<1, 2>(),
-             nb::keep_alive<1, 3>())
+        .def("__init__", &make_overlay, nb::arg("older"), nb::arg("old_areas"), nb::arg("newer"),
+             nb::arg("new_areas"), nb::keep_alive<1, 2>(), nb::keep_alive<1, 4>())
         .def("pairs", &pairs,
-             "First pair of each new triangle (m + 1,), old triangles, shares of their areas.")
+             "First pair of each new triangle (m + 1,), old triangles, areas in common.")
         .def("at_border", &at_border,
              "New triangles at the border of the old mesh, the old ones nearest, distances.")
         .def("moments", &moments, nb::arg("values"), nb::arg("old_nodes"), nb::arg("new_nodes"),
-             nb::arg("size"), "Integrals (size, k) of columns (n, k) with each new basis function.")
+             nb::arg("size"), nb::arg("reach"), nb::arg("low").none(), nb::arg("high").none(),
+             "Integrals (size, k) of columns (n, k) with each new basis function; where the old "
+             "mesh "
+             "does not cover the new one, within bounds (m, k) of the old triangles, or None.")
         .def("ranges", &ranges, nb::arg("low"), nb::arg("high"), nb::arg("nodes"), nb::arg("size"),
              "Least and largest of (m, k) on the old triangles around new nodes, both (size, k).");
 }

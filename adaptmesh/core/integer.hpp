@@ -5,6 +5,8 @@
 // 4199, and the incircle determinant, a sum of two products of those, 8399.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace adaptmesh {
@@ -22,6 +24,16 @@ class Integer {
     }
 
     int sign() const { return size_ == 0 ? 0 : negative_ ? -1 : 1; }
+
+    // This integer times 2^exponent, correct to the last bit but one; the three highest limbs have
+    // at least 65 bits.
+    double times_power_of_two(int exponent) const {
+        double sum = 0;
+        for (int i = std::max(size_ - 3, 0); i < size_; ++i) {
+            sum += std::ldexp(double(limbs_[i]), 32 * i + exponent);
+        }
+        return negative_ ? -sum : sum;
+    }
 
     friend Integer operator+(const Integer& a, const Integer& b) {
         return signed_sum(a, b, b.negative_);

@@ -3,12 +3,21 @@
 //     b_i = sum over new triangles K, old triangles T of   integral over K and T of  phi_i u
 //
 // On the common part of K and T both are polynomials; a rule that is exact for their product gives
-// the exact moments. Where K is not covered by the old mesh (the chords of a curved boundary
-// differ), u is taken to be its mean over the part that is, or, where none is, its value at the
-// nearest point of the border: so constants stay what they are.
+// the exact moments. Where the old mesh doesn't cover K (chords of a curved boundary differ), the
+// old field is extended by a polynomial p of its degree:
+//
+//     at least half of K is covered    p is the L2 projection of u on the covered part
+//     less, and K is near              p is u on the old triangle nearest to the centroid of K
+//     else                             p is the value at the nearest point of the border
+//
+// Polynomials are extended by themselves in the first two cases. A polynomial that is small on half
+// of a triangle can't be large on all of it; and "near" is what keeps the second from being large.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "adaptmesh/core/overlay.hpp"
@@ -16,31 +25,41 @@
 namespace adaptmesh {
 
 // The Lagrange basis of degree 0, 1, 2 at barycentric coordinates: the vertices, then the midpoint
-// of the edge opposite each. `RULE` integrates products of two of them exactly on a triangle:
-// barycentric coordinates, and weights that add up to 1.
+// of the edge opposite each. `AT` is where the nodes are. `RULE` integrates products of two of them
+// exactly on a triangle: barycentric coordinates, and weights that add up to 1. If at least
+// `COVERED` of a new triangle is, the field is extended from there: a mean can be of any part. A
+// polynomial with
+// values at the nodes lies between its least and its largest control value, those of Bernstein.
 struct RulePoint {
     double at[3], weight;
 };
 
 struct Constant {
     static constexpr int NODES = 1;
+    static constexpr double COVERED = 1e-9;
     static void basis(const double*, double* out) { out[0] = 1; }
     static constexpr RulePoint RULE[] = {{{1. / 3, 1. / 3, 1. / 3}, 1}};
-    static constexpr double INTEGRALS[] = {1};  // over a triangle of area 1
+    static constexpr double AT[1][3] = {{1. / 3, 1. / 3, 1. / 3}};
+    static void control_values(const double* nodal, double* out) { out[0] = nodal[0]; }
 };
 
 struct Linear {
     static constexpr int NODES = 3;
+    static constexpr double COVERED = 0.5;
     static void basis(const double* l, double* out) {
         for (int i = 0; i < 3; ++i) out[i] = l[i];
     }
     static constexpr RulePoint RULE[] = {
         {{0, 0.5, 0.5}, 1. / 3}, {{0.5, 0, 0.5}, 1. / 3}, {{0.5, 0.5, 0}, 1. / 3}};
-    static constexpr double INTEGRALS[] = {1. / 3, 1. / 3, 1. / 3};
+    static constexpr double AT[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    static void control_values(const double* nodal, double* out) {
+        std::copy(nodal, nodal + 3, out);
+    }
 };
 
 struct Quadratic {
     static constexpr int NODES = 6;
+    static constexpr double COVERED = 0.5;
     static void basis(const double* l, double* out) {
         for (int i = 0; i < 3; ++i) out[i] = l[i] * (2 * l[i] - 1);
         out[3] = 4 * l[1] * l[2], out[4] = 4 * l[2] * l[0], out[5] = 4 * l[0] * l[1];
@@ -52,21 +71,35 @@ struct Quadratic {
     static constexpr RulePoint RULE[] = {{{1 - 2 * A, A, A}, U}, {{A, 1 - 2 * A, A}, U},
                                          {{A, A, 1 - 2 * A}, U}, {{1 - 2 * B, B, B}, V},
                                          {{B, 1 - 2 * B, B}, V}, {{B, B, 1 - 2 * B}, V}};
-    static constexpr double INTEGRALS[] = {0, 0, 0, 1. / 3, 1. / 3, 1. / 3};
+    static constexpr double AT[6][3] = {{1, 0, 0},     {0, 1, 0},     {0, 0, 1},
+                                        {0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}};
+    static void control_values(const double* nodal, double* out) {
+        std::copy(nodal, nodal + 3, out);
+        for (int i = 0; i < 3; ++i) {
+            out[3 + i] = 2 * nodal[3 + i] - 0.5 * (nodal[(i + 1) % 3] + nodal[(i + 2) % 3]);
+        }
+    }
+};
+
+// What the extension of a field may not exceed: for each column the least and the largest value.
+struct Bounds {
+    std::vector<double> low, high;
 };
 
 // Moments on one new triangle, of all columns at once.
 template <typename Degree>
 class LocalMoments {
     static constexpr int N = Degree::NODES;
+    using Matrix = std::array<std::array<double, N>, N>;
+    static constexpr double SOME = 1e-9;
 
   public:
     explicit LocalMoments(std::size_t columns)
-        : columns_(columns), nodal_(N * columns), moments_(N * columns) {}
+        : columns_(columns), nodal_(N * columns), moments_(N * columns), extension_(N * columns) {}
 
     void clear() {
         std::fill(moments_.begin(), moments_.end(), 0.0);
-        std::fill(covered_, covered_ + N, 0.0);
+        covered_ = {};
     }
 
     // The old field on an old triangle, from the values at its nodes.
@@ -77,45 +110,112 @@ class LocalMoments {
         }
     }
 
-    void add(const Overlap& part, double old_area) {
-        part.for_each_triangle(
-            [&](double share, const Corner& a, const Corner& b, const Corner& c) {
-                for (const RulePoint& q : Degree::RULE) {
-                    double in_old[3], in_new[3], u[N], phi[N];
-                    for (int i = 0; i < 3; ++i) {
-                        in_old[i] =
-                            q.at[0] * a.in_old[i] + q.at[1] * b.in_old[i] + q.at[2] * c.in_old[i];
-                        in_new[i] =
-                            q.at[0] * a.in_new[i] + q.at[1] * b.in_new[i] + q.at[2] * c.in_new[i];
-                    }
-                    Degree::basis(in_old, u);
-                    Degree::basis(in_new, phi);
-                    add_point(share * old_area * q.weight, u, phi);
+    // Adds the field taken, on a part of the new triangle.
+    void add(const Overlap& part) {
+        part.for_each_triangle([&](double area, const Corner& a, const Corner& b, const Corner& c) {
+            for (const RulePoint& q : Degree::RULE) {
+                double in_old[3], in_new[3], u[N], phi[N];
+                for (int i = 0; i < 3; ++i) {
+                    in_old[i] =
+                        q.at[0] * a.in_old[i] + q.at[1] * b.in_old[i] + q.at[2] * c.in_old[i];
+                    in_new[i] =
+                        q.at[0] * a.in_new[i] + q.at[1] * b.in_new[i] + q.at[2] * c.in_new[i];
                 }
-            });
+                Degree::basis(in_old, u);
+                Degree::basis(in_new, phi);
+                add_point(area * q.weight, u, phi);
+            }
+        });
     }
 
-    double covered() const {
+    // Notes a part of the new triangle as covered; only `extend` needs to know.
+    void cover(const Overlap& part) {
+        part.for_each_triangle([&](double area, const Corner& a, const Corner& b, const Corner& c) {
+            for (const RulePoint& q : Degree::RULE) {
+                double in_new[3];
+                for (int i = 0; i < 3; ++i) {
+                    in_new[i] =
+                        q.at[0] * a.in_new[i] + q.at[1] * b.in_new[i] + q.at[2] * c.in_new[i];
+                }
+                add_products(area * q.weight, in_new, covered_);
+            }
+        });
+    }
+
+    double covered_area() const {
         double sum = 0;
-        for (double m : covered_) sum += m;
+        for (const auto& row : covered_) {
+            for (double m : row) sum += m;
+        }
         return sum;
     }
 
-    // What the old mesh leaves uncovered of a new triangle of this area; `place` is where its
-    // centroid lies in the old mesh, whose field there was taken.
-    void fill(double area, const metrics::Location& place) {
-        const double covered = this->covered();
-        double missing[N];
-        for (int i = 0; i < N; ++i) missing[i] = area * Degree::INTEGRALS[i] - covered_[i];
+    // Extends the field from the part that is covered.
+    void extend_from_covered() {
+        extension_ = moments_;
+        solve(covered_, extension_);
+    }
+
+    // Extends the polynomial taken, of an old triangle, by the coordinates in it of the corners.
+    void extend_polynomial(const double corners[3][3]) {
+        for (int i = 0; i < N; ++i) {
+            double in_old[3], u[N];
+            for (int k = 0; k < 3; ++k) {
+                in_old[k] = 0;
+                for (int j = 0; j < 3; ++j) in_old[k] += Degree::AT[i][j] * corners[j][k];
+            }
+            Degree::basis(in_old, u);
+            for (std::size_t c = 0; c < columns_; ++c) {
+                extension_[i * columns_ + c] = field_taken(u, c);
+            }
+        }
+    }
+
+    // Extends the value at `place` of the field taken.
+    void extend_value(const metrics::Location& place) {
+        const double corners[3][3] = {{place.weight[0], place.weight[1], place.weight[2]},
+                                      {place.weight[0], place.weight[1], place.weight[2]},
+                                      {place.weight[0], place.weight[1], place.weight[2]}};
+        extend_polynomial(corners);
+    }
+
+    // Draws the extension towards a value within bounds, as far as it has to be to keep them: the
+    // mean over what is covered, or if that is next to nothing, the field taken at `place`.
+    void bound_extension(const Bounds& bounds, const metrics::Location& place, double area) {
+        const double covered = covered_area();
         double u[N];
         Degree::basis(place.weight, u);
         for (std::size_t c = 0; c < columns_; ++c) {
-            double beyond = 0;
-            for (int j = 0; j < N; ++j) {
-                beyond += covered > 0 ? moments_[j * columns_ + c] / covered
-                                      : u[j] * nodal_[j * columns_ + c];
+            double inside = 0;
+            for (int i = 0; i < N; ++i) inside += moments_[i * columns_ + c];
+            inside = covered > SOME * area ? inside / covered : field_taken(u, c);
+            double at_nodes[N], control[N], share = 1;
+            for (int i = 0; i < N; ++i) at_nodes[i] = extension_[i * columns_ + c];
+            Degree::control_values(at_nodes, control);
+            for (double value : control) {
+                const double room = (value > inside ? bounds.high[c] : bounds.low[c]) - inside;
+                if (std::fabs(value - inside) > std::fabs(room)) {
+                    share = std::min(share, room / (value - inside));
+                }
             }
-            for (int i = 0; i < N; ++i) moments_[i * columns_ + c] += beyond * missing[i];
+            share = std::max(share, 0.0);
+            for (int i = 0; i < N; ++i) {
+                extension_[i * columns_ + c] = inside + share * (at_nodes[i] - inside);
+            }
+        }
+    }
+
+    // Adds the extension on what is not covered of the new triangle.
+    void fill(double area) {
+        Matrix missing = {};
+        for (const RulePoint& q : Degree::RULE) add_products(area * q.weight, q.at, missing);
+        for (int i = 0; i < N; ++i) {
+            for (int j = 0; j < N; ++j) {
+                const double m = missing[i][j] - covered_[i][j];
+                for (std::size_t c = 0; c < columns_; ++c) {
+                    moments_[i * columns_ + c] += m * extension_[j * columns_ + c];
+                }
+            }
         }
     }
 
@@ -127,49 +227,166 @@ class LocalMoments {
     }
 
   private:
+    double field_taken(const double u[N], std::size_t column) const {
+        double value = 0;
+        for (int j = 0; j < N; ++j) value += u[j] * nodal_[j * columns_ + column];
+        return value;
+    }
+
     void add_point(double weight, const double u[N], const double phi[N]) {
-        for (int i = 0; i < N; ++i) covered_[i] += weight * phi[i];
         for (std::size_t c = 0; c < columns_; ++c) {
-            double value = 0;
-            for (int j = 0; j < N; ++j) value += u[j] * nodal_[j * columns_ + c];
-            value *= weight;
+            const double value = weight * field_taken(u, c);
             for (int i = 0; i < N; ++i) moments_[i * columns_ + c] += phi[i] * value;
         }
     }
 
+    static void add_products(double weight, const double* at, Matrix& matrix) {
+        double phi[N];
+        Degree::basis(at, phi);
+        for (int i = 0; i < N; ++i) {
+            for (int j = 0; j < N; ++j) matrix[i][j] += weight * phi[i] * phi[j];
+        }
+    }
+
+    // Gaussian elimination; the matrix is symmetric and positive definite. The right-hand sides
+    // become the solutions.
+    void solve(Matrix m, std::vector<double>& right) const {
+        const auto subtract = [&](int i, int from, double factor) {
+            for (std::size_t c = 0; c < columns_; ++c) {
+                right[i * columns_ + c] -= factor * right[from * columns_ + c];
+            }
+        };
+        for (int k = 0; k < N; ++k) {
+            for (int i = k + 1; i < N; ++i) {
+                const double factor = m[i][k] / m[k][k];
+                for (int j = k; j < N; ++j) m[i][j] -= factor * m[k][j];
+                subtract(i, k, factor);
+            }
+        }
+        for (int k = N - 1; k >= 0; --k) {
+            for (int i = k + 1; i < N; ++i) subtract(k, i, m[k][i]);
+            for (std::size_t c = 0; c < columns_; ++c) right[k * columns_ + c] /= m[k][k];
+        }
+    }
+
     std::size_t columns_;
-    std::vector<double> nodal_, moments_;
-    double covered_[N];
+    std::vector<double> nodal_, moments_, extension_;
+    Matrix covered_;
 };
 
-// values: rows of `columns` numbers at the old nodes; nodes: of each triangle; out: such rows for
-// the new nodes, zero at first.
-template <typename Degree, typename Poll>
-void moments(const Overlay& overlay, const double* values, std::size_t columns,
-             const std::int32_t* old_nodes, const std::int32_t* new_nodes, double* out,
-             Poll& poll) {
-    constexpr int N = Degree::NODES;
-    LocalMoments<Degree> local(columns);
-    for (std::int32_t k = 0; k < overlay.new_mesh().triangle_count(); ++k) {
-        if (k % 1024 == 0) poll();
-        const Triangle3 newer = Overlay::triangle_of(overlay.new_mesh(), k);
-        local.clear();
-        for (std::size_t i = overlay.first()[k]; i < overlay.first()[k + 1]; ++i) {
-            const std::int32_t t = overlay.olds()[i];
-            const Triangle3 older = Overlay::triangle_of(overlay.old_mesh(), t);
-            local.take(values, old_nodes + std::size_t(t) * N);
-            local.add(Overlap(older, newer), Overlay::area(older));
+// Rows of `columns` numbers for the old triangles: the bounds of a field on each; null if there are
+// none to keep.
+struct BoundsOnTriangles {
+    const double *low, *high;
+};
+
+// Moments on all new triangles. values: rows of `columns` numbers at the old nodes; nodes: of each
+// triangle; out: such rows for the new nodes, zero at first.
+//
+// reach: polynomials are extended to new triangles outside by at most this share of an edge.
+template <typename Degree>
+class Moments {
+    static constexpr int N = Degree::NODES;
+    static constexpr double HEIGHTS = 4;
+
+  public:
+    Moments(const Overlay& overlay, const double* values, std::size_t columns,
+            const std::int32_t* old_nodes, double reach, BoundsOnTriangles bounds)
+        : overlay_(overlay),
+          values_(values),
+          columns_(columns),
+          old_nodes_(old_nodes),
+          reach_(reach),
+          bounds_(bounds),
+          local_(columns) {}
+
+    template <typename Poll>
+    void add_to(double* out, const std::int32_t* new_nodes, Poll& poll) {
+        for (std::int32_t k = 0; k < overlay_.new_mesh().triangle_count(); ++k) {
+            if (k % 1024 == 0) poll();
+            add_common_parts(k);
+            if (overlay_.is_at_border(k)) extend(k);
+            local_.store(out, new_nodes + std::size_t(k) * N);
         }
-        const double area = Overlay::area(newer);
-        // Nothing is missing but by rounding where the borders coincide: then not to conserve
-        // would be worse.
-        if (overlay.is_at_border(k) && area - local.covered() > Overlay::rounding(newer)) {
-            const metrics::Location place = overlay.place_of(k);
-            local.take(values, old_nodes + std::size_t(place.triangle) * N);
-            local.fill(area, place);
-        }
-        local.store(out, new_nodes + std::size_t(k) * N);
     }
-}
+
+  private:
+    void add_common_parts(std::int32_t k) {
+        const Triangle3 newer = overlay_.newer(k);
+        const bool is_at_border = overlay_.is_at_border(k);
+        local_.clear();
+        for (std::size_t i = overlay_.first()[k]; i < overlay_.first()[k + 1]; ++i) {
+            const std::int32_t t = overlay_.olds()[i];
+            const Triangle3 older = overlay_.older(t);
+            const Overlap part(older, newer);
+            take(t);
+            local_.add(part);
+            if (is_at_border) local_.cover(part);
+        }
+    }
+
+    void take(std::int32_t t) { local_.take(values_, old_nodes_ + std::size_t(t) * N); }
+
+    void extend(std::int32_t k) {
+        const Triangle3 newer = overlay_.newer(k);
+        const metrics::Location place = overlay_.place_of(k);
+        take(place.triangle);
+        double corners[3][3];
+        if (local_.covered_area() >= Degree::COVERED * newer.area)
+            local_.extend_from_covered();
+        else if (is_near(newer, overlay_.older(place.triangle), place.outside, corners))
+            local_.extend_polynomial(corners);
+        else
+            local_.extend_value(place);
+        if (bounds_.low != nullptr) local_.bound_extension(bounds_of(k, place.triangle), place, newer.area);
+        local_.fill(newer.area);
+    }
+
+    // Whether a polynomial on `older` may be extended over `newer`: whose centroid is outside by at
+    // most a share of the longest edge of both, and no corner by too many heights of `older`. Gives
+    // the barycentric coordinates of the corners.
+    bool is_near(const Triangle3& newer, const Triangle3& older, double outside,
+                 double corners[3][3]) const {
+        double lowest = 0;
+        for (int i = 0; i < 3; ++i) {
+            Overlap::weigh(older, newer.at[i], corners[i]);
+            for (int j = 0; j < 3; ++j) lowest = std::min(lowest, corners[i][j]);
+        }
+        return lowest >= -HEIGHTS &&
+               outside <= reach_ * std::max(longest_edge(newer), longest_edge(older));
+    }
+
+    static double longest_edge(const Triangle3& t) {
+        const auto length = [&](int i, int j) {
+            return std::hypot(t.at[j].x - t.at[i].x, t.at[j].y - t.at[i].y);
+        };
+        return std::max({length(0, 1), length(1, 2), length(2, 0)});
+    }
+
+    // Of the field on all old triangles that overlap new triangle k, or if there are none, on the
+    // one nearest.
+    Bounds bounds_of(std::int32_t k, std::int32_t nearest) const {
+        Bounds out{std::vector<double>(columns_, INFINITY),
+                   std::vector<double>(columns_, -INFINITY)};
+        const auto include = [&](std::int32_t t) {
+            for (std::size_t c = 0; c < columns_; ++c) {
+                out.low[c] = std::min(out.low[c], bounds_.low[std::size_t(t) * columns_ + c]);
+                out.high[c] = std::max(out.high[c], bounds_.high[std::size_t(t) * columns_ + c]);
+            }
+        };
+        const std::size_t begin = overlay_.first()[k], end = overlay_.first()[k + 1];
+        for (std::size_t i = begin; i < end; ++i) include(overlay_.olds()[i]);
+        if (begin == end) include(nearest);
+        return out;
+    }
+
+    const Overlay& overlay_;
+    const double* values_;
+    std::size_t columns_;
+    const std::int32_t* old_nodes_;
+    double reach_;
+    BoundsOnTriangles bounds_;
+    LocalMoments<Degree> local_;
+};
 
 }  // namespace adaptmesh

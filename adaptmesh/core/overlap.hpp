@@ -11,9 +11,18 @@
 //     ‾‾‾‾\‾‾/‾‾‾‾
 //          \/
 //
-// Corners are kept as barycentric coordinates in both triangles. A crossing is computed from the
-// two edges alone, symmetrically in their ends: the four parts that meet there have the same point,
-// to the last bit, and so the parts of a triangle add up to it.
+// Corners are kept as barycentric coordinates in both triangles. Where edges cross, these are two
+// ratios of areas, one for each edge, and they have to be of one and the same point. Exact signs
+// find a crossing also where edges lie on one line but for rounding: on slanted borders and lines
+// that both meshes have, and where one mesh has an edge that the other has in two. The areas there
+// are as small as their own rounding, and ratios of them would be of points anywhere on the edges.
+// So all areas are computed with small relative errors (accurate_area.hpp): then both ratios are
+// those of the true crossing, and in barycentric coordinates all errors are of the order of
+// rounding, however thin the triangles.
+//
+// A crossing is computed from the two edges alone, symmetrically in their ends: the four parts that
+// meet there have the same point, to the last bit. The area of a part is that in the smaller of the
+// triangles, so that its error is small beside both.
 //
 // The new mesh is thought shifted by an infinitely small vector (e, e^2) (Edelsbrunner and Muecke,
 // Simulation of simplicity, ACM Transactions on Graphics 9, 1990): then no vertex lies on an edge
@@ -23,13 +32,15 @@
 
 #include <cmath>
 
+#include "adaptmesh/core/accurate_area.hpp"
 #include "adaptmesh/core/point.hpp"
-#include "adaptmesh/core/predicates.hpp"
 
 namespace adaptmesh {
 
+// Counter-clockwise corners, and the area.
 struct Triangle3 {
     Point at[3];
+    double area;
 };
 
 struct Corner {
@@ -38,7 +49,6 @@ struct Corner {
 
 class Overlap {
   public:
-    // Both counter-clockwise.
     Overlap(const Triangle3& older, const Triangle3& newer) : old_(older), new_(newer) {
         if (!is_apart()) find_portions();
     }
@@ -48,46 +58,52 @@ class Overlap {
     // Whether edge i of the old triangle, opposite its corner i, runs through the new one.
     bool has_old_edge(int i) const { return old_edge_inside_[i]; }
 
-    // Calls visit(share, a, b, c) for the triangles that make up the part: their corners, and their
-    // area as a share of the old triangle.
+    // Calls visit(area, a, b, c) for the triangles that make up the part: their areas and corners.
     template <typename Visit>
     void for_each_triangle(Visit visit) const {
+        const bool in_old = old_.area <= new_.area;
         for (int k = 1; k < count_; ++k) {
             const Corner &a = begin_[0], &b = begin_[k], &c = end_[k];
-            const double share = (b.in_old[1] - a.in_old[1]) * (c.in_old[2] - a.in_old[2]) -
-                                 (b.in_old[2] - a.in_old[2]) * (c.in_old[1] - a.in_old[1]);
-            if (share != 0) visit(share, a, b, c);
+            const double area = in_old ? old_.area * share(a.in_old, b.in_old, c.in_old)
+                                       : new_.area * share(a.in_new, b.in_new, c.in_new);
+            if (area != 0) visit(area, a, b, c);
         }
     }
 
-    double share_of_old() const {
+    double area() const {
         double sum = 0;
-        for_each_triangle([&](double share, auto&...) { sum += share; });
+        for_each_triangle([&](double area, auto&...) { sum += area; });
         return sum;
     }
 
+    // Barycentric coordinates of a point in a triangle, negative where it is beyond an edge.
+    static void weigh(const Triangle3& triangle, Point p, double weights[3]) {
+        const double whole = 2 * triangle.area;
+        for (int i = 0; i < 3; ++i) {
+            const Point a = triangle.at[after(i)], b = triangle.at[after(after(i))];
+            weights[i] = twice_area(a, b, p) / whole;
+        }
+    }
+
   private:
+    // The area of abc, as a share of the triangle in which these are their coordinates.
+    static double share(const double a[3], const double b[3], const double c[3]) {
+        return (b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1]);
+    }
+
     static constexpr int after(int i) { return i == 2 ? 0 : i + 1; }
 
     // On which side of the edges of one triangle the corners of the other are, by edge and corner:
-    // exact signs, and twice the areas in floating point, which is as accurate as they need to be.
+    // exact signs, and twice the areas as far as the signs needed them.
     struct Sides {
         bool in[3][3];
-        double area[3][3];
+        RoundedArea area[3][3];
         bool all_out(int edge) const { return !(in[edge][0] || in[edge][1] || in[edge][2]); }
         bool inside(int corner) const { return in[0][corner] && in[1][corner] && in[2][corner]; }
     };
 
-    // Turned about, an edge gives exactly the opposite area.
-    static double twice_area(Point a, Point b, Point c) {
-        return (a.x - c.x) * (b.y - c.y) - (a.y - c.y) * (b.x - c.x);
-    }
-
-    // Whether c is left of a -> b; on the line, as if it were shifted by shift * (e, e^2).
-    static bool is_left(Point a, Point b, Point c, int shift) {
-        int sign = 0;
-        if ((c.x != a.x || c.y != a.y) && (c.x != b.x || c.y != b.y)) sign = orient2d(a, b, c);
-        if (sign != 0) return sign > 0;
+    // Whether points left of a -> b are those that a shift by shift * (e, e^2) takes there from it.
+    static bool is_shifted_left(Point a, Point b, int shift) {
         if (a.y != b.y) return (a.y > b.y) == (shift > 0);
         return (b.x > a.x) == (shift > 0);
     }
@@ -96,8 +112,13 @@ class Overlap {
                            Sides& sides) {
         const Point a = of.at[after(edge)], b = of.at[after(after(edge))];
         for (int j = 0; j < 3; ++j) {
-            sides.in[edge][j] = is_left(a, b, corners.at[j], shift);
-            sides.area[edge][j] = twice_area(a, b, corners.at[j]);
+            RoundedArea area = rounded_twice_area(a, b, corners.at[j]);
+            if (!area.has_sign()) {
+                area.value = twice_area(a, b, corners.at[j]);
+                area.magnitude = std::fabs(area.value);
+            }
+            sides.area[edge][j] = area;
+            sides.in[edge][j] = area.value != 0 ? area.value > 0 : is_shifted_left(a, b, shift);
         }
     }
 
@@ -148,38 +169,54 @@ class Overlap {
     Corner old_corner(int v) const {
         Corner out{{0, 0, 0}, {}};
         out.in_old[v] = 1;
-        weigh(old_sides_, v, out.in_new);
+        weigh_inside(new_, old_.at[v], old_sides_, v, out.in_new);
         return out;
     }
 
     Corner new_corner(int v) const {
         Corner out{{}, {0, 0, 0}};
         out.in_new[v] = 1;
-        weigh(new_sides_, v, out.in_old);
+        weigh_inside(old_, new_.at[v], new_sides_, v, out.in_old);
         return out;
     }
 
-    // Barycentric coordinates of a corner inside the other triangle.
-    static void weigh(const Sides& sides, int corner, double weights[3]) {
-        double sum = 0;
-        for (int i = 0; i < 3; ++i) sum += weights[i] = std::fmax(sides.area[i][corner], 0.0);
-        for (int i = 0; i < 3; ++i) weights[i] = sum > 0 ? weights[i] / sum : 1.0 / 3;
+    // Barycentric coordinates of corner `v` of the other triangle, at `p` and inside.
+    static void weigh_inside(const Triangle3& triangle, Point p, const Sides& sides, int v,
+                             double weights[3]) {
+        double sum = 0, magnitude = 0;
+        for (int i = 0; i < 3; ++i) {
+            sum += weights[i] = std::fmax(sides.area[i][v].value, 0.0);
+            magnitude += sides.area[i][v].magnitude;
+        }
+        if (!is_accurate(magnitude, sum)) {
+            weigh(triangle, p, weights);
+            sum = weights[0] + weights[1] + weights[2];
+        }
+        for (int i = 0; i < 3; ++i) weights[i] /= sum;
     }
 
     Corner crossing(int old_edge, int new_edge) const {
         Corner out{{0, 0, 0}, {0, 0, 0}};
-        cut(old_sides_.area[new_edge], old_edge, out.in_old);
-        cut(new_sides_.area[old_edge], new_edge, out.in_new);
+        cut(old_, old_edge, new_, new_edge, old_sides_, out.in_old);
+        cut(new_, new_edge, old_, old_edge, new_sides_, out.in_new);
         return out;
     }
 
-    // Where an edge crosses the line that its triangle's corners have these areas with. Its ends
-    // are on different sides, the exact signs have it; so only the magnitudes count.
-    static void cut(const double areas[3], int edge, double weights[3]) {
+    // Where `edge` of a triangle crosses edge `across` of the other; `sides` are those of the
+    // corners of the first. Its ends are on different sides, and not both on the line: edges of one
+    // line are thought shifted apart.
+    static void cut(const Triangle3& triangle, int edge, const Triangle3& other, int across,
+                    const Sides& sides, double weights[3]) {
         const int a = after(edge), b = after(a);
-        const double at_a = std::fabs(areas[a]), at_b = std::fabs(areas[b]), sum = at_a + at_b;
-        weights[a] = sum > 0 ? at_b / sum : 0.5;
-        weights[b] = sum > 0 ? at_a / sum : 0.5;
+        const RoundedArea &from_a = sides.area[across][a], &from_b = sides.area[across][b];
+        double at_a = std::fabs(from_a.value), at_b = std::fabs(from_b.value);
+        if (!is_accurate(from_a.magnitude + from_b.magnitude, at_a + at_b)) {
+            const Point p = other.at[after(across)], q = other.at[after(after(across))];
+            at_a = std::fabs(twice_area(p, q, triangle.at[a]));
+            at_b = std::fabs(twice_area(p, q, triangle.at[b]));
+        }
+        weights[a] = at_b / (at_a + at_b);
+        weights[b] = at_a / (at_a + at_b);
     }
 
     static constexpr int NONE_CROSSED = -1;

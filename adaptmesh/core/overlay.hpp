@@ -8,9 +8,7 @@
 // hole is there), they may not; then a tree of boxes names all that could be met.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "adaptmesh/core/overlap.hpp"
@@ -24,9 +22,15 @@ class Overlay {
   public:
     using Index = metrics::Index;
 
+    // The meshes, which have to outlive this, and the areas of their triangles.
     template <typename Poll>
-    Overlay(const Locator& older, const Locator& newer, Poll& poll)
-        : old_(older), new_(newer), found_for_(older.triangle_count(), -1) {
+    Overlay(const Locator& older, const double* old_areas, const Locator& newer,
+            const double* new_areas, Poll& poll)
+        : old_(older),
+          new_(newer),
+          old_areas_(old_areas, old_areas + older.triangle_count()),
+          new_areas_(new_areas, new_areas + newer.triangle_count()),
+          found_for_(older.triangle_count(), -1) {
         first_.push_back(0);
         for (Index k = 0; k < new_.triangle_count(); ++k) {
             if (k % 1024 == 0) poll();
@@ -39,52 +43,38 @@ class Overlay {
     const Locator& new_mesh() const { return new_; }
 
     // The pairs of new triangle k are first()[k] to first()[k + 1]: the old triangles, and the
-    // share of its area that each has in common with k.
+    // areas that they have in common with k.
     const std::vector<std::size_t>& first() const { return first_; }
     const std::vector<Index>& olds() const { return olds_; }
-    const std::vector<double>& shares() const { return shares_; }
+    const std::vector<double>& areas() const { return areas_; }
 
     // Whether the border of the old mesh runs through a new triangle, or past it.
     bool is_at_border(Index k) const { return at_border_[k]; }
 
     // Where the centroid of a new triangle lies in the old mesh, or nearest to it.
     metrics::Location place_of(Index k) const {
-        const Triangle3 t = triangle_of(new_, k);
+        const Triangle3 t = newer(k);
         return old_.locate((t.at[0].x + t.at[1].x + t.at[2].x) / 3,
                            (t.at[0].y + t.at[1].y + t.at[2].y) / 3, Locator::NO_TRIANGLE);
     }
 
-    static Triangle3 triangle_of(const Locator& mesh, Index t) {
+    Triangle3 older(Index t) const { return triangle_of(old_, old_areas_, t); }
+    Triangle3 newer(Index k) const { return triangle_of(new_, new_areas_, k); }
+
+  private:
+    static Triangle3 triangle_of(const Locator& mesh, const std::vector<double>& areas, Index t) {
         Triangle3 out;
         for (int i = 0; i < 3; ++i) {
             const Locator::Vertex& v = mesh.vertex(mesh.corner(t, i));
             out.at[i] = {v.x, v.y};
         }
+        out.area = areas[t];
         return out;
     }
 
-    static double area(const Triangle3& t) {
-        const double ux = t.at[1].x - t.at[0].x, uy = t.at[1].y - t.at[0].y;
-        const double vx = t.at[2].x - t.at[0].x, vy = t.at[2].y - t.at[0].y;
-        return 0.5 * (ux * vy - uy * vx);
-    }
-
-    // By how much the area of a triangle, and the sum of its parts, may be off by rounding: a share
-    // of its longest side squared, however thin it is.
-    static double rounding(const Triangle3& t) {
-        double longest = 0;
-        for (int i = 0; i < 3; ++i) {
-            const Point p = t.at[i], q = t.at[(i + 1) % 3];
-            const double x = q.x - p.x, y = q.y - p.y;
-            longest = std::max(longest, x * x + y * y);
-        }
-        return 64 * std::numeric_limits<double>::epsilon() * longest;
-    }
-
-  private:
     void find_old_under(Index k) {
-        const Triangle3 newer = triangle_of(new_, k);
-        bool at_border = !spread_from(place_of(k).triangle, k, newer);
+        const Triangle3 newer = this->newer(k);
+        const bool at_border = !spread_from(place_of(k).triangle, k, newer);
         at_border_.push_back(at_border);
         if (!at_border) return;
         metrics::Box box;
@@ -109,12 +99,12 @@ class Overlay {
     }
 
     bool try_add(Index t, Index k, const Triangle3& newer) {
-        const Triangle3 older = triangle_of(old_, t);
+        const Triangle3 older = this->older(t);
         const Overlap overlap(older, newer);
         if (overlap.empty()) return false;
         found_for_[t] = k;
-        const double share = overlap.share_of_old();
-        if (share != 0) olds_.push_back(t), shares_.push_back(share);
+        const double area = overlap.area();
+        if (area != 0) olds_.push_back(t), areas_.push_back(area);
         for (int i = 0; i < 3; ++i) {
             if (overlap.has_old_edge(i)) waiting_.push_back(old_.neighbour(t, i));
         }
@@ -122,9 +112,10 @@ class Overlay {
     }
 
     const Locator &old_, &new_;
+    const std::vector<double> old_areas_, new_areas_;
     std::vector<std::size_t> first_;
     std::vector<Index> olds_;
-    std::vector<double> shares_;
+    std::vector<double> areas_;
     std::vector<bool> at_border_;
     std::vector<Index> found_for_;  // of each old triangle, the last new one it was found for
     std::vector<Index> waiting_;
