@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from . import _core
 from .errors import TransferError
 from .mesh import Mesh
-from .spaces import Floats
+from .spaces import Floats, Ints
 
 OUTSIDE = 0.25
 """How far outside of the old mesh a place may be, relative to the longest edge beside it.
@@ -15,36 +17,74 @@ OUTSIDE = 0.25
 The chords of a circle, cut into edges of a right angle each, are off by a fifth of their length.
 """
 
+SMALLEST_AREA, LARGEST_AREA = 1e-250, 1e250
+"""Of triangles, so that areas of parts of them neither underflow nor overflow."""
 
-def located(mesh: Mesh, which: str) -> _core.Locator:
-    """What finds points in the triangles of a mesh; `which` names it in errors."""
-    flat = np.flatnonzero(~(mesh.areas > 0))
-    if len(flat):
-        t = int(flat[0])
+REMEDIES = {
+    "old": "outside=inf takes the nearest value of the border all the same",
+    "new": "outside=inf leaves out all the same what the new mesh does not cover",
+}
+
+
+@dataclass(frozen=True)
+class Located:
+    """A mesh, what it is called in errors, and what finds points in its triangles."""
+
+    mesh: Mesh
+    which: str
+    locator: _core.Locator
+
+
+def located(mesh: Mesh, which: str) -> Located:
+    """The "old" or the "new" mesh, with what finds points in it.
+
+    Raises
+    ------
+    TransferError
+        A triangle is not counter-clockwise, or too small or large for its area to be a number of
+        full precision; or the triangles are not a mesh.
+    """
+    bad = np.flatnonzero(~((mesh.areas >= SMALLEST_AREA) & (mesh.areas <= LARGEST_AREA)))
+    if len(bad):
+        t = int(bad[0])
+        area = float(mesh.areas[t])
+        remedy = (
+            "expected a size between 1e-125 and 1e125, in other units"
+            if area > 0
+            else "triangles must be counter-clockwise"
+        )
         raise TransferError(
             f"triangle {t} = {tuple(mesh.triangles[t].tolist())} of the {which} mesh has the area "
-            f"{mesh.areas[t]:g}: triangles must be counter-clockwise"
+            f"{area:g}: {remedy}"
         )
     try:
-        return _core.Locator(mesh.points, mesh.triangles)
+        return Located(mesh, which, _core.Locator(mesh.points, mesh.triangles))
     except ValueError as error:
         raise TransferError(f"the {which} mesh is not one: {error}") from error
 
 
+def check_triangles(numbers: Ints, ours: Located, theirs: Located, outside: float) -> None:
+    """Refuse triangles of our mesh whose centroids are far outside of the other mesh."""
+    centroids = ours.mesh.points[ours.mesh.triangles[numbers]].mean(axis=1)
+    nearest, _, distances = theirs.locator.locate(centroids)
+    edges = np.maximum(longest_edges(ours.mesh)[numbers], longest_edges(theirs.mesh)[nearest])
+    what = f"triangles of the {ours.which} mesh"
+    check_distances(centroids, distances, edges, outside, what, theirs.which)
+
+
 def check_distances(
-    places: Floats, distances: Floats, edges: Floats, outside: float, what: str
+    places: Floats, distances: Floats, edges: Floats, outside: float, what: str, which: str
 ) -> None:
-    """Refuse places (k, 2) that are farther from the old mesh than `outside` times an edge."""
+    """Refuse places (k, 2) that are farther from the mesh `which` than `outside` times an edge."""
     if not outside >= 0:
-        raise TransferError(f"outside={outside!r}: a share of an edge is wanted, 0 or more")
+        raise TransferError(f"outside={outside!r}: expected a share of an edge, 0 or more")
     far = np.flatnonzero(distances > outside * edges)
     if len(far):
         worst = int(far[np.argmax(distances[far])])
         x, y = places[worst].tolist()
         raise TransferError(
-            f"{len(far)} {what} lie far outside of the old mesh, one at ({x:g}, {y:g}) by "
-            f"{distances[worst]:g}: both meshes must cover the same domain (outside=inf takes the "
-            "nearest value of the border all the same)"
+            f"{len(far)} {what} lie far outside of the {which} mesh, one at ({x:g}, {y:g}) by "
+            f"{distances[worst]:g}: both meshes must cover the same domain ({REMEDIES[which]})"
         )
 
 

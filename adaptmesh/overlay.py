@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from . import _core
 from .errors import TransferError
 from .limiting import bounds_on_triangles, limited
-from .location import OUTSIDE, check_distances, located, longest_edges
+from .location import OUTSIDE, check_triangles, located
 from .mesh import Mesh
 from .projection import mass_matrix, solve_mass
 from .spaces import Field, Floats, Ints, Space, as_field, as_fields
@@ -29,8 +29,8 @@ class Overlay:
     ----------
     old_mesh, new_mesh : Mesh
     outside : float, optional
-        The centroid of a new triangle that no old one overlaps may be this far from the old mesh,
-        times its longest edge or that of the nearest old triangle.
+        The centroid of a triangle that overlaps none of the other mesh may be this far from that
+        mesh, times its longest edge or that of the nearest triangle there.
 
     Attributes
     ----------
@@ -42,34 +42,27 @@ class Overlay:
     Raises
     ------
     TransferError
-        The meshes do not overlap, a new triangle is too far outside, or a mesh is broken.
+        The meshes do not overlap, a triangle of one is too far outside of the other, or a mesh is
+        broken.
 
     Notes
     -----
     Whether triangles overlap is decided by exact signs. Without curved boundaries or other
-    differences of the domains `uncovered` and `lost` are zero to rounding.
+    differences of the domains `uncovered` and `lost` are zero to rounding, that of the coordinates
+    of slanted boundaries included.
     """
 
     def __init__(self, old_mesh: Mesh, new_mesh: Mesh, *, outside: float = OUTSIDE) -> None:
         self.old_mesh, self.new_mesh = old_mesh, new_mesh
-        self._core = _core.Overlay(
-            located(old_mesh, "old"), old_mesh.areas, located(new_mesh, "new"), new_mesh.areas
-        )
-        self._first, olds, self.areas = self._core.pairs()
-        counts = np.diff(self._first)
-        news = np.repeat(np.arange(len(new_mesh.triangles), dtype=np.int32), counts)
+        old, new = located(old_mesh, "old"), located(new_mesh, "new")
+        self._core = _core.Overlay(old.locator, old_mesh.areas, new.locator, new_mesh.areas)
+        first, olds, self.areas = self._core.pairs()
+        news = np.repeat(np.arange(len(new_mesh.triangles), dtype=np.int32), np.diff(first))
         self.pairs: Ints = np.stack([olds, news], axis=1)
         if not len(olds):
             raise TransferError(f"the meshes do not overlap: {old_mesh!r} and {new_mesh!r}")
-        self._check_distances(outside)
-
-    def _check_distances(self, outside: float) -> None:
-        new, nearest, distances = self._core.at_border()
-        bare = np.diff(self._first)[new] == 0
-        new, nearest, distances = new[bare], nearest[bare], distances[bare]
-        centroids = self.new_mesh.points[self.new_mesh.triangles[new]].mean(axis=1)
-        edges = np.maximum(longest_edges(self.old_mesh)[nearest], longest_edges(self.new_mesh)[new])
-        check_distances(centroids, distances, edges, outside, "triangles of the new mesh")
+        check_triangles(_missing(news, len(new_mesh.triangles)), new, old, outside)
+        check_triangles(_missing(olds, len(old_mesh.triangles)), old, new, outside)
 
     @property
     def area(self) -> float:
@@ -133,3 +126,9 @@ class Overlay:
         ends = np.cumsum([field.columns.shape[1] for field in fields])[:-1]
         parts = np.split(projected, ends, axis=1)
         return [field.like(part) for field, part in zip(fields, parts, strict=True)]
+
+
+def _missing(numbers: Ints, count: int) -> Ints:
+    """Which of 0, ..., count - 1 are not among some numbers."""
+    out: Ints = np.flatnonzero(np.bincount(numbers, minlength=count) == 0).astype(np.int32)
+    return out

@@ -8,9 +8,8 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core
 from .errors import TransferError
-from .location import OUTSIDE, check_distances, located, longest_edges
+from .location import OUTSIDE, Located, check_distances, located, longest_edges
 from .mesh import Mesh
 from .overlay import Overlay
 from .spaces import Field, Floats, Ints, Space, as_field, as_fields, basis
@@ -114,13 +113,13 @@ def interpolated(
     """The old fields at the nodes of the new mesh."""
     if is_same_mesh(old, new):
         return {name: field.like(field.columns.copy()) for name, field in fields.items()}
-    locator = located(old, "old")
+    where = located(old, "old")
     places: dict[str, tuple[Ints, Floats]] = {}
     out = {}
     for name, field in fields.items():
         kind = field.space.name
         if kind not in places:
-            places[kind] = _places(locator, old, Space(new, kind), outside)
+            places[kind] = _places(where, Space(new, kind), outside)
         triangles, weights = places[kind]
         shape = basis(field.space.degree, weights)
         values = field.columns[field.space.nodes_of_triangles[triangles]]
@@ -133,12 +132,12 @@ def is_same_mesh(old: Mesh, new: Mesh) -> bool:
     return np.array_equal(old.points, new.points) and np.array_equal(old.triangles, new.triangles)
 
 
-def _places(locator: _core.Locator, old: Mesh, space: Space, outside: float) -> tuple[Ints, Floats]:
+def _places(old: Located, space: Space, outside: float) -> tuple[Ints, Floats]:
     """The old triangle of each new node, and its barycentric coordinates there."""
-    triangles, weights, distances = locator.locate(space.nodes)
+    triangles, weights, distances = old.locator.locate(space.nodes)
     off = np.flatnonzero(distances > 0)
-    edges = np.maximum(longest_edges(old)[triangles[off]], _longest_edges_at_nodes(space)[off])
-    check_distances(space.nodes[off], distances[off], edges, outside, f"{space.name} nodes")
+    edges = np.maximum(longest_edges(old.mesh)[triangles[off]], _longest_edges_at_nodes(space)[off])
+    check_distances(space.nodes[off], distances[off], edges, outside, f"{space.name} nodes", "old")
     return triangles, weights
 
 

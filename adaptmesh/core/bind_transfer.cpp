@@ -5,6 +5,7 @@
 
 #include "adaptmesh/core/accurate_area.hpp"
 #include "adaptmesh/core/bindings.hpp"
+#include "adaptmesh/core/exact_location.hpp"
 #include "adaptmesh/core/moments.hpp"
 #include "adaptmesh/core/overlay.hpp"
 #include "adaptmesh/core/ranges.hpp"
@@ -29,9 +30,9 @@ nb::tuple locate(const Locator& locator, const Points& points) {
     std::vector<double> weights(3 * n), distances(n);
     {
         nb::gil_scoped_release release;
+        const adaptmesh::ExactLocator exact(locator);
         for (std::size_t i = 0; i < n; ++i) {
-            const metrics::Location place =
-                locator.locate(points(i, 0), points(i, 1), Locator::NO_TRIANGLE);
+            const metrics::Location place = exact.locate({points(i, 0), points(i, 1)});
             triangles[i] = place.triangle;
             std::copy(place.weight, place.weight + 3, weights.begin() + 3 * i);
             distances[i] = place.outside;
@@ -67,22 +68,6 @@ nb::tuple pairs(const Overlay& overlay) {
     const std::size_t m = starts.size(), n = olds.size();
     return nb::make_tuple(to_numpy(std::move(starts), {m}), to_numpy(std::move(olds), {n}),
                           to_numpy(std::move(areas), {n}));
-}
-
-// The new triangles with the border of the old mesh, and where their centroids are in it.
-nb::tuple at_border(const Overlay& overlay) {
-    std::vector<std::int32_t> numbers, triangles;
-    std::vector<double> distances;
-    for (std::int32_t k = 0; k < overlay.new_mesh().triangle_count(); ++k) {
-        if (!overlay.is_at_border(k)) continue;
-        const metrics::Location place = overlay.place_of(k);
-        numbers.push_back(k);
-        triangles.push_back(place.triangle);
-        distances.push_back(place.outside);
-    }
-    const std::size_t n = numbers.size();
-    return nb::make_tuple(to_numpy(std::move(numbers), {n}), to_numpy(std::move(triangles), {n}),
-                          to_numpy(std::move(distances), {n}));
 }
 
 nb::object moments(const Overlay& overlay, const Table& values, const Nodes& old_nodes,
@@ -142,8 +127,6 @@ void bind_transfer(nb::module_& m) {
              nb::arg("new_areas"), nb::keep_alive<1, 2>(), nb::keep_alive<1, 4>())
         .def("pairs", &pairs,
              "First pair of each new triangle (m + 1,), old triangles, areas in common.")
-        .def("at_border", &at_border,
-             "New triangles at the border of the old mesh, the old ones nearest, distances.")
         .def("moments", &moments, nb::arg("values"), nb::arg("old_nodes"), nb::arg("new_nodes"),
              nb::arg("size"), nb::arg("reach"), nb::arg("low").none(), nb::arg("high").none(),
              "Integrals (size, k) of columns (n, k) with each new basis function; where the old "
