@@ -63,7 +63,8 @@ def transfer(
         ``"interpolation"``: the value of the old field at each node of the new mesh, for P0 at the
         centroid. Cheap, and exact where a node is a vertex of both meshes.
         ``"conservative"``: the L² projection; among the fields of the new space the one nearest to
-        the old field. Its integral is that of the old field, to rounding.
+        the old field. Its integral is that of the old field, and polynomials of the degree of the
+        space come back, to rounding.
     space : {"P0", "P1", "P2"}, or mapping of str to these, optional
         Needed only where the length fits two spaces.
     keep_bounds : bool, optional
@@ -73,7 +74,8 @@ def transfer(
     outside : float, optional
         A node of the new mesh outside of the old takes the value at the nearest point of its
         border, if it is no farther than this times the longest edge of the old triangle there or of
-        the new triangles at the node. So do, for the conservative method, new triangles outside.
+        the new triangles at the node. For the conservative method, the centroid of a triangle that
+        overlaps none of the other mesh may be this far outside.
 
     Returns
     -------
@@ -84,15 +86,26 @@ def transfer(
     Raises
     ------
     TransferError
-        A field is of the wrong length, or not finite; a node is too far outside; the meshes do not
-        overlap; a mesh is broken.
+        A field is of the wrong length, or not finite; a node or triangle is too far outside; the
+        meshes do not overlap; a mesh is broken.
 
     Notes
     -----
-    Where the domains differ, by the chords of a curved boundary, the old field is extended: on the
-    uncovered part of a new triangle by its mean on the covered part. The integral of the new field
-    is then that of the old over the common part, plus that of the extension; `Overlay` tells how
-    large these parts are. Constants stay what they are. Formulas and sources: :doc:`/transfer`.
+    Where the domains differ, by the chords of a curved boundary, the conservative method extends
+    the old field by polynomials of its degree, on the uncovered part of a new triangle by the L²
+    projection of its covered part. The integral of the new field is then that of the old over the
+    common part, plus that of the extension; `Overlay` tells how large these parts are. Polynomials
+    of the degree of the space stay what they are. Formulas and sources: :doc:`/transfer`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import adaptmesh as am
+    >>> square = am.Domain.rectangle(0, 0, 1, 1)
+    >>> old, new = am.generate(square, 0.3), am.generate(square, 0.2)
+    >>> u = am.transfer(old.points[:, 0], old, new, method="conservative")
+    >>> bool(np.abs(u - new.points[:, 0]).max() < 1e-14)
+    True
     """
     if method not in METHODS:
         raise TransferError(f"method={method!r} is none of {', '.join(map(repr, METHODS))}")

@@ -19,6 +19,7 @@ PAGES = {
     "repair": (3, 1),
     "metrics": (6, 2),
     "boundaries": (3, 0),
+    "transfer": (4, 1),
 }
 
 # Replaces the pictures where none can be drawn, as on a server without any OpenGL.

@@ -338,7 +338,8 @@ class Moments {
             local_.extend_polynomial(corners);
         else
             local_.extend_value(place);
-        if (bounds_.low != nullptr) local_.bound_extension(bounds_of(k, place.triangle), place, newer.area);
+        if (bounds_.low != nullptr)
+            local_.bound_extension(bounds_of(k, place.triangle), place, newer.area);
         local_.fill(newer.area);
     }
 
