@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from .curves import Curve
 from .errors import DomainError
 from .invariants.covering import meet
-from .runs import Run, points_on
+from .runs import Run, name_of_curve, points_on
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -293,8 +293,3 @@ class _Refinement:
     def place(self, k: int) -> str:
         x, y = self.points[self.ends[k]].mean(axis=0)
         return f"({x:.10g}, {y:.10g})"
-
-
-def name_of_curve(curves: Sequence[Curve], i: int) -> str:
-    """A curve in words."""
-    return f"curve {i} ({curves[i]!r})"

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, domain_input
-from .chords import Surroundings, chords_along, name_of_curve
+from .chords import Surroundings, chords_along
 from .curves import Curve
 from .domain_input import Floats, Inside, Ints, read_only
 from .errors import DomainError
-from .runs import Run, are_near, join, points_on
+from .runs import Run, are_near, join, name_of_curve, points_on
 from .value import Value
 
 JOINED = 1e-12
@@ -183,6 +183,7 @@ def skeleton_of(
         raise DomainError(
             f"join_tolerance={join_tolerance}: a length from 0 to the extent, {extent:g}, is wanted"
         )
+    _check_extents(curves, join_tolerance)
     if not 0 <= corner_angle <= 180:
         raise DomainError(f"corner_angle={corner_angle}: degrees from 0 to 180 are wanted")
     joined = join(curves, tags, min(corner_angle, MESH_TURN), join_tolerance, isolated)
@@ -225,7 +226,7 @@ def skeleton_of(
 
 
 def _check_curves(curves: Sequence[Curve]) -> None:
-    """Refuse what are no curves, and those that arithmetic cannot tell from points."""
+    """Refuse what are no curves, or none of finite numbers."""
     if not curves:
         raise DomainError("no curves: give those that bound the domain, from adaptmesh.curves")
     for i, curve in enumerate(curves):
@@ -233,9 +234,16 @@ def _check_curves(curves: Sequence[Curve]) -> None:
             raise DomainError(
                 f"curve {i} is a {type(curve).__name__}: make it one of adaptmesh.curves"
             )
-        places = domain_input.checked_points(_some_points(curve), f"curve {i}: point")
+        domain_input.checked_points(_some_points(curve), f"curve {i}: point")
+
+
+def _check_extents(curves: Sequence[Curve], join_tolerance: float) -> None:
+    """Refuse curves that rounding has eaten, but for those within the tolerance: they vanish."""
+    for i, curve in enumerate(curves):
+        places = _some_points(curve)
         extent, far = float(np.ptp(places, axis=0).max()), float(np.abs(places).max())
-        if extent <= IN_PLACES * np.finfo(float).eps * far:
+        vanishes = 2 * extent <= join_tolerance and not curve.is_closed
+        if extent <= IN_PLACES * np.finfo(float).eps * far and not vanishes:
             raise DomainError(
                 f"{name_of_curve(curves, i)} is {extent:.3g} long or wide, and coordinates of "
                 f"{far:g} are rounded to {np.spacing(far):.1g}: move the origin near it"

@@ -241,7 +241,8 @@ class Domain(Value):
         join_tolerance : float, optional
             Ends that are nearer than this are the same. If not given, 1e-12 of the extent or 8
             units in the last place of coordinates, what the rounding of sines and cosines can
-            leave.
+            leave. Of a curve that is itself no longer than that, both ends are the same, and
+            nothing is left.
 
         Raises
         ------

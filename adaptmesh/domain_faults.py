@@ -21,7 +21,8 @@ def fault_text(domain: Domain, kind: str, i: int, j: int, x: float, y: float) ->
         return (
             f"{a} and {b} overlap near {place}: keep one, divided at the points on it, {OR_REPAIR}"
         )
-    line = line_text(domain, j) if kind in ("open_hole", "uncertain_hole") else ""
+    segment = {"open_hole": j, "uncertain_hole": j, "degenerate_segment": i}.get(kind)
+    line = "" if segment is None else line_text(domain, segment)
     messages = {
         "all_collinear": "all points lie on one line: there is nothing to mesh",
         "duplicate_points": f"points {i} and {j} are the same, {place}: keep one of them, "
@@ -46,8 +47,16 @@ def fault_text(domain: Domain, kind: str, i: int, j: int, x: float, y: float) ->
         "point_outside": f"point {i} at {place} is on no segment and outside the domain, or in a "
         f"hole: remove it, {OR_REPAIR}",
         "empty_domain": "nothing is left inside: every part of the domain is a hole",
+        "too_few_points": f"expected at least 3 points, got {i}",
+        "too_many_points": f"{i} points are more than can be numbered with 32 bits: divide the "
+        "domain",
+        "not_finite": f"point {i} at {place} is not finite: remove it or give it coordinates",
+        "segment_out_of_range": f"segment {i} names point {j}, but the points are numbered 0 to "
+        f"{len(domain.points) - 1}",
+        "degenerate_segment": f"{line} begins and ends at the same point, {j} at "
+        f"{place}: remove it, {OR_REPAIR}",
     }
-    return messages.get(kind, f"{kind} at {place}")
+    return messages[kind]
 
 
 def too_near_text(

@@ -20,11 +20,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .curves import Curve
+from .errors import DomainError
 from .value import Value
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Index = NDArray[np.integer]
+
+LOOKS = 8
+"""Steps by which the length of a piece of a curve is measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,29 +147,47 @@ def join(
     corner_angle : float
         Where a line turns by more than this, in degrees, is a corner.
     tolerance : float
-        Ends nearer than this are one.
+        Ends nearer than this are one. What is itself no longer than that, and begins and ends in
+        one place, is left out.
     stops : (m, 2) array
         Where ends are corners, be they smooth or not.
     """
     pieces = _pieces(curves)
-    ends = np.concatenate([_ends(curves, pieces, 0), _ends(curves, pieces, 1)])
-    node = places_of(ends, tolerance)
-    at: list[list[int]] = [[] for _ in range(node.max() + 1)]
-    for e, v in enumerate(node.tolist()):
+    ends = np.stack([_ends(curves, pieces, 0), _ends(curves, pieces, 1)])
+    place = places_of(ends.reshape(-1, 2), tolerance).reshape(2, -1)
+    stays = np.array(
+        [
+            not _vanishes(curves, piece, start, end, tolerance)
+            for piece, (start, end) in zip(pieces, place.T.tolist(), strict=True)
+        ]
+    )
+    if not stays.any():
+        raise DomainError(
+            f"all curves are shorter than join_tolerance={tolerance:g}: choose a smaller one"
+        )
+    pieces = list(itertools.compress(pieces, stays))
+    ends = ends[:, stays].reshape(-1, 2)
+    number = np.unique(place[:, stays], return_inverse=True)[1].ravel()
+    node = number.tolist()
+    at: list[list[int]] = [[] for _ in range(number.max() + 1)]
+    for e, v in enumerate(node):
         at[v].append(e)
-    stopped = set(node[are_near(ends, stops, tolerance)].tolist())
+    stopped = set(number[are_near(ends, stops, tolerance)].tolist())
     is_corner = [
         v in stopped or _is_corner(curves, tags, pieces, found, corner_angle)
         for v, found in enumerate(at)
     ]
-    chains = _chains(node.tolist(), at, is_corner, len(pieces))
+    chains = _chains(node, at, is_corner, len(pieces))
 
-    number = np.cumsum(is_corner) - 1
+    corner_number = np.cumsum(is_corner) - 1
     first = np.array([found[0] for found in at])[np.array(is_corner)]
     corners = ends[first]
     lines, owners, runs = [], [], []
     for chain in chains:
-        a, b = int(number[node[chain[0]]]), int(number[node[_other(chain[-1], len(pieces))]])
+        a, b = (
+            int(corner_number[node[chain[0]]]),
+            int(corner_number[node[_other(chain[-1], len(pieces))]]),
+        )
         piece = pieces[chain[0] % len(pieces)]
         if len(chain) == 1 and curves[piece.curve].is_straight:
             lines.append((a, b))
@@ -190,6 +212,30 @@ def _pieces(curves: Sequence[Curve]) -> list[Piece]:
     return out
 
 
+def _vanishes(
+    curves: Sequence[Curve], piece: Piece, start: int, end: int, tolerance: float
+) -> bool:
+    """Whether nothing is left of a piece, as its ends, of these numbers, are one place.
+
+    A closed curve stays, be it ever so small; so does one that comes back from far away.
+    """
+    curve = curves[piece.curve]
+    if start != end or (curve.is_closed and piece.t1 - piece.t0 == 1):
+        return False
+    p = curve.point(np.linspace(piece.t0, piece.t1, LOOKS + 1))
+    length = float(np.hypot(*np.diff(p, axis=0).T).sum())
+    if length <= tolerance:
+        return True
+    if not curve.is_straight:
+        return False
+    (x0, y0), (x1, y1) = p[[0, -1]].tolist()
+    raise DomainError(
+        f"{name_of_curve(curves, piece.curve)} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}) is "
+        f"{length:.3g} long, but both its ends are one place with join_tolerance={tolerance:g}, as "
+        "shorter curves lie between them: choose a smaller join_tolerance"
+    )
+
+
 def _ends(curves: Sequence[Curve], pieces: list[Piece], which: int) -> Floats:
     """Where the pieces begin or end, (n, 2)."""
     out = []
@@ -199,6 +245,11 @@ def _ends(curves: Sequence[Curve], pieces: list[Piece], which: int) -> Floats:
             t[t == 1] = 0  # it ends exactly where it began
         out.append(curves[i].point(t))
     return np.concatenate(out)
+
+
+def name_of_curve(curves: Sequence[Curve], i: int) -> str:
+    """A curve in words."""
+    return f"curve {i} ({curves[i]!r})"
 
 
 def places_of(ends: Floats, tolerance: float) -> NDArray[np.intp]:
