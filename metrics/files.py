@@ -1,28 +1,34 @@
 """A control space from files: a mesh and the sizes or metrics at its vertices.
 
 Medit text (``.mesh`` with ``.sol``, as written by Mmg) and BAMG (``.mesh`` with ``.mtr``) are read
-here; ``.vtu`` and ``.msh`` by meshio. What `adaptmesh.write` writes with ``metric=`` is read back,
-except from ``.msh`` of version 4.1, where meshio does not understand its names; of 2.2 it is.
+here; ``.vtu`` and ``.msh`` by `adaptmesh`, if it is installed too. What `adaptmesh.write` writes
+with ``metric=`` is read back.
 """
 
 from __future__ import annotations
 
 import os
+from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .arrays import Floats, Ints, as_points, as_triangles
 from .background import Background
-from .errors import MetricError
+from .errors import AdaptmeshError, MetricError
 from .text import text_of
 
 __all__ = ["read"]
 
 PathLike: TypeAlias = "str | os.PathLike[str]"
 
+MESHES = "metrics.meshes"
+"""Entry points by suffix: functions of a path that give points, triangles, and fields by name."""
+
 _SOLUTIONS = (".sol", ".mtr")
+_LARGEST_COUNT = 1 << 48  # far more than any file can hold
 
 
 def read(
@@ -68,7 +74,7 @@ def read(
         solution = solution or _beside(mesh_path)
         mesh, values, origin = _medit_mesh(mesh_path), _solution(solution), solution
     elif suffix in (".vtu", ".msh"):
-        mesh, values = _by_meshio(path, None if field is None else os.fspath(field))
+        mesh, values = _by_plugin(path, None if field is None else os.fspath(field))
         origin = path
     else:
         raise MetricError(
@@ -134,7 +140,11 @@ class _Words:
 
     def __init__(self, path: Path) -> None:
         try:
+            if path.exists() and not path.is_file():
+                raise MetricError(f"{path} cannot be read: it is no regular file")
             text = text_of(path.read_bytes())
+        except MetricError:
+            raise
         except (OSError, ValueError) as error:
             raise MetricError(f"{path} cannot be read: {error}") from error
         lines = (line.split("#", 1)[0] for line in text.splitlines())
@@ -142,13 +152,21 @@ class _Words:
         self.path, self.place = path, 0
 
     def keyword(self) -> str:
-        """The next word that is no number; "End" where there is none."""
-        while self.place < len(self.words):
-            word = self.words[self.place]
+        """The next word; "End" where there is none."""
+        if self.place == len(self.words):
+            return "End"
+        word = self.words[self.place]
+        if not word[0].isalpha():
+            raise MetricError(
+                f"{self.path}: a keyword was expected, not {word[:24]!r}: a count may be wrong"
+            )
+        self.place += 1
+        return word
+
+    def skip(self) -> None:
+        """Pass over the numbers of a keyword that does not matter."""
+        while self.place < len(self.words) and not self.words[self.place][0].isalpha():
             self.place += 1
-            if word[0].isalpha():
-                return word
-        return "End"
 
     def numbers(self, count: int, what: str) -> Floats:
         words = self.words[self.place : self.place + count]
@@ -164,7 +182,7 @@ class _Words:
 
     def integer(self, what: str) -> int:
         value = float(self.numbers(1, what)[0])
-        if value != np.floor(value) or value < 0:
+        if value != np.floor(value) or not 0 <= value <= _LARGEST_COUNT:
             raise MetricError(f"{self.path}: {what} must be a whole number, not {value:g}")
         return int(value)
 
@@ -189,10 +207,21 @@ def _medit_mesh(path: Path) -> _Mesh:
         elif keyword == "Vertices":
             points = words.rows(dim + 1, "Vertices")[:, :dim]  # and a reference
         elif keyword == "Triangles":
-            triangles = words.rows(4, "Triangles")[:, :3].astype(np.int64) - 1
+            triangles = _vertices(words.rows(4, "Triangles")[:, :3], path)
+        else:
+            words.skip()
     if points is None or triangles is None:
         raise MetricError(f"{path} has no {'Vertices' if points is None else 'Triangles'}")
     return _checked(path, points, triangles)
+
+
+def _vertices(numbers: Floats, path: Path) -> NDArray[np.int64]:
+    """Numbers from 1 as numbers from 0."""
+    wrong = ~((np.abs(numbers) <= _LARGEST_COUNT) & (numbers == np.rint(numbers))).all(axis=1)
+    if wrong.any():
+        i = int(wrong.argmax())
+        raise MetricError(f"{path}: triangle {i} has the vertices {numbers[i].tolist()}")
+    return numbers.astype(np.int64) - 1
 
 
 def _solution(path: Path) -> Floats:
@@ -209,6 +238,8 @@ def _bamg_metric(path: Path) -> Floats:
     if columns not in (1, 3):
         raise MetricError(f"{path}: rows of 1 size or 3 metric entries are wanted, not {columns}")
     values = words.numbers(count * columns, "the values").reshape(count, columns)
+    if words.place < len(words.words):
+        raise MetricError(f"{path} has more than {count} rows of {columns} values")
     return values[:, 0] if columns == 1 else values
 
 
@@ -220,45 +251,47 @@ def _medit_solution(path: Path) -> Floats:
             dim = words.dimension()
         elif keyword == "End":
             raise MetricError(f"{path} has no SolAtVertices: there are no values to read")
+        else:
+            words.skip()
     count = words.integer("the number of values")
-    types = words.numbers(words.integer("the number of fields"), "the types").astype(int).tolist()
+    types = words.numbers(words.integer("the number of fields"), "the types").tolist()
     if types == [1]:
-        return words.numbers(count, "SolAtVertices")
+        values = words.numbers(count, "SolAtVertices")
+        words.keyword()
+        return values
     if types != [3]:
+        listed = ", ".join(f"{t:g}" for t in types)
         raise MetricError(
-            f"{path} has fields of the types {types}: one is wanted, of type 1 (sizes) or 3 "
+            f"{path} has fields of the types {listed}: one is wanted, of type 1 (sizes) or 3 "
             "(metrics)"
         )
     columns = 3 if dim == 2 else 6
     # In space the order is m11 m12 m22 m13 m23 m33.
-    return words.numbers(count * columns, "SolAtVertices").reshape(count, columns)[:, :3]
+    values = words.numbers(count * columns, "SolAtVertices").reshape(count, columns)[:, :3]
+    words.keyword()
+    return values
 
 
-# -------------------------------------------------------------------------------- through meshio
+# ---------------------------------------------------------------------------------- by adaptmesh
 
 
-def _by_meshio(path: Path, field: str | None) -> tuple[_Mesh, Floats]:
-    import meshio
-
-    reader = meshio.vtu if path.suffix.lower() == ".vtu" else meshio.gmsh
+def _by_plugin(path: Path, field: str | None) -> tuple[_Mesh, Floats]:
+    """The mesh and values that the reader of the suffix finds, see `MESHES`."""
+    reader = next(
+        (r for r in entry_points(group=MESHES) if r.name == path.suffix.lower()[1:]), None
+    )
+    if reader is None:
+        raise MetricError(f"{path}: {path.suffix} is read by way of adaptmesh, which is not there")
     try:
-        content = reader.read(path)
-    except (Exception, SystemExit) as error:  # whatever meshio makes of a damaged file
-        raise MetricError(
-            f"{path} cannot be read by meshio ({type(error).__name__}: {error}); adaptmesh may: "
-            "metrics.Background.on(adaptmesh.read(path), adaptmesh.io.read_fields(path)[name])"
-        ) from error
-    triangles = content.cells_dict.get("triangle")
-    if triangles is None:
-        raise MetricError(f"{path} has no triangles, only {sorted(content.cells_dict)}")
-    values = np.asarray(content.point_data[_field_name(path, content.point_data, field)])
+        points, triangles, fields = reader.load()(path)
+    except AdaptmeshError as error:
+        raise MetricError(str(error)) from None
+    values = np.asarray(fields[_field_name(path, fields, field)])
     if values.ndim == 2 and values.shape[1] in (4, 9):
         values = values.reshape(len(values), *(2 * [int(values.shape[1] ** 0.5)]))
     if values.shape[1:] == (3, 3):
         values = values[:, :2, :2]
-    if values.shape[1:] == (1,):
-        values = values[:, 0]
-    return _checked(path, content.points, triangles), values
+    return _checked(path, points, triangles), values
 
 
 def _field_name(path: Path, point_data: dict[str, Any], field: str | None) -> str:
@@ -269,7 +302,7 @@ def _field_name(path: Path, point_data: dict[str, Any], field: str | None) -> st
         return names[0]
     if field in names:
         return str(field)
-    listed = ", ".join(map(repr, names)) or "none"
+    listed = ", ".join(map(repr, sorted(names))) or "none"
     if field is None:
         raise MetricError(f"{path}: choose one of its point data with field=...: {listed}")
     raise MetricError(f"{path} has no point data {field!r}; it has {listed}")
