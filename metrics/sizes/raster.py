@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -17,8 +18,12 @@ __all__ = ["Raster"]
 
 _X_NAMES = ("x", "lon", "longitude", "easting")
 _Y_NAMES = ("y", "lat", "latitude", "northing")
+# Attributes in which arrays from files say what marks cells without a value.
+_MARKERS = ("_FillValue", "missing_value", "nodata")
 # A point this far beyond the border, relative to the size of the raster, is on it by rounding.
 _BORDER = 1e-9
+# Sizes larger than so many extents of the raster are fill values: 1e20, 9.97e36, 1e38, 1.8e308.
+_MOST_EXTENTS = 1000.0
 
 
 class Raster(ControlSpace):
@@ -49,8 +54,12 @@ class Raster(ControlSpace):
     origin : {"upper", "lower"}, optional
         With `extent`, and only then, needed: whether row 0 is at the top, as in images and most
         GeoTIFFs, or at the bottom.
-    no_data : float, optional
-        The number that marks cells without a value. NaN and masked cells are always without.
+    no_data : float or sequence of float, optional
+        The numbers that mark cells without a value. NaN and masked cells are always without; a
+        DataArray brings the numbers in its attributes `_FillValue`, `missing_value` and `nodata`.
+        Nothing else is guessed: what is no size is an error, and so is a number above 1000 times
+        the longer side of the raster, as fill values of files and libraries are (1e20, 1e38). To
+        say that a cell has no limit, give it a size as large as the raster.
     fill : {"error", "nearest"} or float, optional
         What cells without a value get: nothing, so that a point that needs one is an error; the
         value of the nearest cell that has one; or this size.
@@ -82,7 +91,7 @@ class Raster(ControlSpace):
         x: ArrayLike | None = None,
         y: ArrayLike | None = None,
         origin: Literal["upper", "lower"] | None = None,
-        no_data: float | None = None,
+        no_data: float | Sequence[float] | None = None,
         fill: Literal["error", "nearest"] | float = "error",
         interpolation: Literal["linear", "nearest"] = "linear",
         outside: Literal["clamp", "error"] = "clamp",
@@ -92,9 +101,9 @@ class Raster(ControlSpace):
         if hasattr(values, "dims") and hasattr(values, "coords"):
             if extent is not None or x is not None or y is not None:
                 raise MetricError("a DataArray has coordinates: give neither extent nor x and y")
-            values, x, y, marker = _of_data_array(values)
-            no_data = marker if no_data is None else no_data
-        sizes = _as_sizes(values, no_data)
+            values, x, y, markers = _of_data_array(values)
+            no_data = markers if no_data is None else no_data
+        given = sizes = _as_sizes(values, no_data)
         columns, rows = _centres(sizes, extent, x, y, origin)
         if columns[0] > columns[-1]:
             columns, sizes = columns[::-1], sizes[:, ::-1]
@@ -102,9 +111,10 @@ class Raster(ControlSpace):
             rows, sizes = rows[::-1], sizes[::-1]
         #: Centres, rising, and the sizes there with row 0 at the bottom; NaN where there is none.
         self.x, self.y = np.ascontiguousarray(columns), np.ascontiguousarray(rows)
-        self.sizes = _filled(np.ascontiguousarray(sizes), self.x, self.y, fill)
         self._x_edges = _edges(self.x, None if extent is None else extent[:2])
         self._y_edges = _edges(self.y, None if extent is None else extent[2:])
+        _refuse_fill_values(given, max(np.ptp(self._x_edges), np.ptp(self._y_edges)))
+        self.sizes = _filled(np.ascontiguousarray(sizes), self.x, self.y, fill)
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], band: int = 1, **options: Any) -> Raster:
@@ -131,7 +141,7 @@ class Raster(ControlSpace):
             ) from error
         try:
             with rasterio.open(path) as file:
-                values, affine, marker = file.read(band), file.transform, file.nodata
+                values, affine, marker = file.read(band, masked=True), file.transform, file.nodata
         except (rasterio.errors.RasterioError, IndexError) as error:
             raise MetricError(f"{os.fspath(path)} cannot be read: {error}") from error
         if affine.b != 0 or affine.d != 0:
@@ -197,8 +207,8 @@ class Raster(ControlSpace):
         return f"<Raster: {rows} x {columns} on [{x0:g}, {x1:g}] x [{y0:g}, {y1:g}]>"
 
 
-def _of_data_array(data: Any) -> tuple[Any, Any, Any, float | None]:
-    """Values with y along the rows, coordinates, and the no-data marker of an xarray.DataArray."""
+def _of_data_array(data: Any) -> tuple[Any, Any, Any, list[float]]:
+    """Values with y along the rows, coordinates, and the no-data markers of an xarray.DataArray."""
     dims = [str(dim) for dim in data.dims]
     x_dims = [dim for dim in dims if dim.lower() in _X_NAMES]
     y_dims = [dim for dim in dims if dim.lower() in _Y_NAMES]
@@ -210,24 +220,25 @@ def _of_data_array(data: Any) -> tuple[Any, Any, Any, float | None]:
     values = np.asarray(data.values)
     if dims[0] == x_dims[0]:
         values = values.T
-    marker = getattr(data, "attrs", {}).get("_FillValue")
+    attributes = getattr(data, "attrs", {})
+    markers = [m for name in _MARKERS for m in _markers(attributes.get(name))]
     for dim in dims:
         if dim not in data.coords:
             raise MetricError(f"the DataArray has no coordinates along {dim!r}")
     x, y = (np.asarray(data.coords[dim[0]].values) for dim in (x_dims, y_dims))
-    return values, x, y, None if marker is None else float(marker)
+    return values, x, y, markers
 
 
-def _as_sizes(values: Any, no_data: float | None) -> Floats:
+def _as_sizes(values: Any, no_data: float | Sequence[float] | None) -> Floats:
     """Sizes (rows, columns), NaN where there is none."""
     raw = as_numbers(np.ma.getdata(values), "the raster")
     sizes = raw.astype(np.float64)
     if sizes.ndim != 2 or sizes.size == 0:
         raise MetricError(f"the raster must have the shape (rows, columns), not {sizes.shape}")
-    if no_data is not None:
+    for mark in _markers(no_data):
         with np.errstate(over="ignore"):  # as the array holds it: -3.4e38 is another in float32
             is_float = raw.dtype.kind == "f"
-            marker = raw.dtype.type(no_data) if is_float else np.float64(no_data)
+            marker = raw.dtype.type(mark) if is_float else np.float64(mark)
         sizes[raw == marker] = np.nan
     sizes[np.ma.getmaskarray(values)] = np.nan
     wrong = ~(np.isnan(sizes) | ((sizes > 0) & np.isfinite(sizes)))
@@ -240,6 +251,30 @@ def _as_sizes(values: Any, no_data: float | None) -> Floats:
     if np.isnan(sizes).all():
         raise MetricError("no cell of the raster has data")
     return sizes
+
+
+def _markers(no_data: float | Sequence[float] | None) -> list[float]:
+    if no_data is None:
+        return []
+    try:
+        return [float(mark) for mark in np.asarray(no_data, dtype=np.float64).ravel()]
+    except (TypeError, ValueError):
+        raise MetricError(
+            f"no_data: expected a number or several numbers, got {no_data!r}"
+        ) from None
+
+
+def _refuse_fill_values(sizes: Floats, side: float) -> None:
+    """Refuse numbers so large that they cannot be meant as sizes on a raster of this extent."""
+    large = sizes > _MOST_EXTENTS * side
+    if large.any():
+        row, column = (int(i) for i in np.unravel_index(large.argmax(), sizes.shape))
+        value = float(sizes[row, column])
+        raise MetricError(
+            f"the raster at row {row}, column {column} is {value!r} ({int(large.sum())} cells are "
+            f"like that), more than {_MOST_EXTENTS:g} times its longer side, {side:g}: a fill "
+            f"value and no size; name it, no_data={value!r}, or give the largest size that is meant"
+        )
 
 
 def _centres(

@@ -178,7 +178,7 @@ class FakeFile:
     def __exit__(self, *_):
         pass
 
-    def read(self, band):
+    def read(self, band, masked=False):
         if band != 1:
             raise IndexError(f"band index {band} out of range")
         return self.table
@@ -224,3 +224,54 @@ def test_read_a_geotiff(tmp_path):
         np.testing.assert_allclose(sizes(field, [[10.5, 1.5], [12.5, 1.5]]), [1, 3])
     with pytest.raises(MetricError, match=r"none.tif cannot be read"):
         Raster.read(tmp_path / "none.tif")
+
+
+FILLS = [1e20, 1e38, 9.969209968386869e36, 3.4028235e38, 1.7976931348623157e308, 2.0e9]
+
+
+@pytest.mark.parametrize("value", FILLS)
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e4])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_fill_values_are_no_sizes(value, scale, dtype):
+    """What numpy, netCDF and GDAL write where there is nothing, in rasters of any extent."""
+    if value > float(np.finfo(dtype).max):
+        pytest.skip("no number of this type")
+    table = (np.array(TABLE, dtype=float) * scale).astype(dtype)
+    table[1, 2] = value
+    extent = tuple(scale * v for v in EXTENT)
+    with pytest.raises(MetricError, match=r"row 1, column 2 is .*: a fill value.*no_data="):
+        Raster(table, extent, origin="upper", fill="nearest")
+    field = Raster(table, extent, origin="upper", no_data=value, fill="nearest")
+    assert field.sizes.max() <= np.max(TABLE) * scale * (1 + 1e-6)
+    both = Raster(table, extent, origin="upper", no_data=[-1.0, value], fill=0.5 * scale)
+    assert np.count_nonzero(both.sizes == 0.5 * scale) >= 1
+    masked = np.ma.masked_values(table, value)
+    assert Raster(masked, extent, origin="upper", fill="nearest").sizes.max() < value
+
+
+def test_a_masked_array_that_was_filled_is_refused():
+    masked = np.ma.array(TABLE, dtype=float, mask=np.eye(len(TABLE), len(TABLE[0])))
+    with pytest.raises(MetricError, match="a fill value and no size"):
+        Raster(masked.filled(), EXTENT, origin="upper")
+
+
+def test_a_size_as_large_as_the_raster_is_one():
+    Raster([[1e3]], (0, 1, 0, 1), origin="lower")
+    with pytest.raises(MetricError, match="a fill value"):
+        Raster([[1.1e3]], (0, 1, 0, 1), origin="lower")
+
+
+@pytest.mark.parametrize("name", ["_FillValue", "missing_value", "nodata"])
+def test_markers_in_attributes(name):
+    table = np.array(TABLE, dtype=float)
+    table[0, 0] = 777.0
+    x, y = [10.5, 11.5, 12.5], [1.5, 0.5]
+    data = data_array(table, ("y", "x"), x=x, y=y)
+    data.attrs = {name: 777.0}
+    assert Raster(data, fill=50).sizes.max() == 50
+
+
+@pytest.mark.parametrize("bad", ["none", [[1], [2, 3]], {}])
+def test_what_is_no_marker(bad):
+    with pytest.raises(MetricError, match="no_data: expected a number"):
+        Raster(TABLE, EXTENT, origin="upper", no_data=bad)
