@@ -18,9 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .crossing import meet
 from .curves import Curve
 from .errors import DomainError
-from .invariants.covering import meet
 from .runs import Run, name_of_curve, points_on
 
 Floats = NDArray[np.float64]

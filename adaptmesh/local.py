@@ -29,7 +29,7 @@ from .domain import Domain
 from .edge_lengths import measure_fresh_edges
 from .errors import DomainError
 from .generate import finished_mesh
-from .invariants.covering import covered_once, crossings
+from .invariants.covering import covered_once, simple_border
 from .invariants.local import positive_triangles
 from .invariants.subject import Subject
 from .lines import Lines
@@ -95,7 +95,7 @@ def edited(
         return None
     held = holders(mesh, lines, chains)
     mesher = load(mesh, domain, held, samples)
-    chains_before, outline_fits = chains, False
+    outline_fits = False
     for turn in range(options.turns):
         if not outline_fits:
             before = chains
@@ -116,7 +116,7 @@ def edited(
     mesher.set_constrained(chains.edges, lines.segments[chains.edge_lines])
     mesher.compact()
     new = finished_mesh(domain, mesher, mesher.labels())
-    if not _is_plane(new, has_new_outline=chains is not chains_before):
+    if not _is_plane(new):
         return None
     report("done", 1.0)
     return Edited(new, share)
@@ -128,16 +128,15 @@ def measured_misfits(mesher: _core.Mesher, samples: Samples, fit: Fit) -> Misfit
     return find_misfits(mesher, samples, fit)
 
 
-def _is_plane(mesh: Mesh, has_new_outline: bool) -> bool:
+def _is_plane(mesh: Mesh) -> bool:
     """Whether the mesh covers the plane once, where it does; exactly.
 
     The outline is edited by what can be seen from inside. Across a slit, or in the bend of a curve,
     its new edges can meet others, or pass over them.
     """
     subject = Subject(mesh)
-    if positive_triangles(subject).broken or len(crossings(subject, mesh.edges)):
-        return False
-    return not has_new_outline or not covered_once(subject).broken
+    looks = (positive_triangles, simple_border, covered_once)
+    return not any(look(subject).broken for look in looks)
 
 
 def fill(mesher: _core.Mesher, samples: Samples, budget: Budget, report: Progress) -> None:

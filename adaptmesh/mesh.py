@@ -135,11 +135,11 @@ class Mesh(Value):
         pairs = () if self.domain is None else self.domain.periodic
         return {(p.first, p.second): periodic_vertices(self, p) for p in pairs}
 
-    def validate(self) -> Validity:
+    def validate(self, *, tolerance: float | None = None) -> Validity:
         """Check every invariant of a mesh by name; see `adaptmesh.validate`."""
         from .validate import validate
 
-        return validate(self)
+        return validate(self, tolerance=tolerance)
 
 
 def _look_up(names: Mapping[str, int], name: str, kind: str) -> int:

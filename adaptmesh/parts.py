@@ -43,7 +43,7 @@ def hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
             f"the mesh lies over itself near ({x:.17g}, {y:.17g}), so it covers no domain; its "
             "validate() lists what is wrong"
         ) from None
-    part = _parts_between(filled, pieces, len(points))
+    part = parts_between(filled, pieces, len(points))
 
     # The largest triangle of each part stands for it.
     p = points[filled]
@@ -57,7 +57,7 @@ def hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
 
 def region_points(mesh: Mesh, edges: Ints) -> dict[int, Floats]:
     """For each region but 0 a point in each of its parts."""
-    part = _parts_between(mesh.triangles, edges, len(mesh.points))
+    part = parts_between(mesh.triangles, edges, len(mesh.points))
     by_area = np.argsort(mesh.areas)[::-1]
     out: dict[int, Floats] = {}
     for number in np.unique(mesh.regions[mesh.regions != 0]).tolist():
@@ -67,7 +67,7 @@ def region_points(mesh: Mesh, edges: Ints) -> dict[int, Floats]:
     return out
 
 
-def _parts_between(triangles: Ints, walls: Ints, n_points: int) -> NDArray[np.intp]:
+def parts_between(triangles: Ints, walls: Ints, n_points: int) -> NDArray[np.intp]:
     """The number of the part that each triangle is in; edges (w, 2) are walls between parts."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -86,12 +86,12 @@ def _parts_between(triangles: Ints, walls: Ints, n_points: int) -> NDArray[np.in
 
 def regions_beside(triangles: Ints, regions: Ints, edges: Ints, n_points: int) -> Ints:
     """The regions on the left and right of each edge, (e, 2), `OUTSIDE` for the outside."""
-    beside = _triangles_beside(triangles, edges, n_points)
+    beside = triangles_beside(triangles, edges, n_points)
     out: Ints = np.append(regions.astype(np.int64), OUTSIDE)[np.stack(beside, axis=1)]
     return out
 
 
-def _triangles_beside(triangles: Ints, edges: Ints, n_points: int) -> tuple[Ints, Ints]:
+def triangles_beside(triangles: Ints, edges: Ints, n_points: int) -> tuple[Ints, Ints]:
     """The triangle on the left and on the right of each edge, -1 where there is none."""
     halves, owner = _half_edges(triangles)
     keys = halves[:, 0].astype(np.int64) * n_points + halves[:, 1]

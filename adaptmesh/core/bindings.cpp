@@ -9,4 +9,5 @@ NB_MODULE(_core, m) {
     bind_mesher(m);
     bind_transfer(m);
     bind_outlines(m);
+    bind_validate(m);
 }

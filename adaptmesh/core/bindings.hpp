@@ -23,6 +23,7 @@ void bind_sampler(nb::module_& m);
 void bind_mesher(nb::module_& m);
 void bind_transfer(nb::module_& m);
 void bind_outlines(nb::module_& m);
+void bind_validate(nb::module_& m);
 
 // (n, 2) and (n, 3) arrays as the Python side hands them over: C-contiguous, right type.
 using Points = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;

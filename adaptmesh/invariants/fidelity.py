@@ -1,248 +1,166 @@
-"""Is it a mesh of its domain?
+"""Are the points, segments and curves of the domain in its mesh, and nothing else?
 
-A point is on a segment, or on a curve, if it is as near to it as `tolerance_of` allows.
+Rows of edges are followed from corner to corner (`rows.py`); distances only say whether a vertex of
+a row lies on the line that the row stands for.
 """
 
 from __future__ import annotations
 
-from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
 
-from ..on_runs import places_on_runs, tolerance_of
-from .subject import Bools, Finding, Floats, Index, Ints, Subject, edge_keys, finding
-
-if TYPE_CHECKING:
-    from ..domain import Domain
-
-QUADRATURE = 1e-9
-"""Areas between curves and their chords are right to this share."""
-
-
-class DomainSubject(Subject):
-    """A mesh and its domain, in the scaled coordinates: which points and edges lie on what."""
-
-    @property
-    def domain(self) -> Domain:
-        """The domain of the mesh; only meshes that have one are held against it."""
-        if self.mesh.domain is None:
-            raise ValueError("the mesh has no domain")
-        return self.mesh.domain
-
-    @cached_property
-    def corners(self) -> Floats:
-        """The points of the domain, scaled as those of the mesh."""
-        return self.scale(self.domain.points)
-
-    @cached_property
-    def straight(self) -> Ints:
-        """The segments of the domain that are no chords of curves."""
-        return np.flatnonzero(self.domain.curved.segment_runs < 0)
-
-    @cached_property
-    def tolerance(self) -> float:
-        """How far from a segment a point may be, scaled."""
-        return float(np.ldexp(self.true_tolerance, -self.exponent))
-
-    @property
-    def true_tolerance(self) -> float:
-        """The tolerance in the units of the mesh."""
-        return tolerance_of(self.domain)
-
-    @cached_property
-    def vertices(self) -> Ints:
-        """The point of the mesh on each point of the domain, -1 where there is none."""
-        from scipy.spatial import KDTree
-
-        distance, vertex = KDTree(self.points).query(self.corners)
-        out: Ints = np.where(distance <= self.tolerance, vertex, -1)
-        return out
-
-    @cached_property
-    def steps(self) -> tuple[Ints, Ints, Bools]:
-        """Steps along segments, in order: the segment, the edge, and whether it is run backwards.
-
-        ::
-
-            A ------- v ---- w -------- B        three steps: Av, vw, wB
-        """
-        import shapely
-
-        a, b = (self.corners[i] for i in self.domain.segments[self.straight].T)
-        tree = shapely.STRtree(shapely.linestrings(np.stack([a, b], axis=1)))
-        lines = shapely.linestrings(self.points[self.mesh.edges])
-        edge, segment = tree.query(lines, predicate="dwithin", distance=self.tolerance)
-        segment = self.straight[segment]
-        start, end = self.mesh.edges[edge].T
-        off = np.maximum(self._distance(segment, start), self._distance(segment, end))
-        # An edge belongs to one segment: where two are in reach (tiny edges at a corner,
-        # boundaries that nearly touch) to the nearest.
-        nearest = np.lexsort((off, edge))
-        first = np.diff(edge[nearest], prepend=-1) > 0
-        mine = nearest[first & (off[nearest] <= self.tolerance)]
-        edge, segment, start, end = edge[mine], segment[mine], start[mine], end[mine]
-        at_start, at_end = self._along(segment, start), self._along(segment, end)
-        order = np.lexsort((at_start + at_end, segment))
-        return segment[order], edge[order], (at_start > at_end)[order]
-
-    def _distance(self, segment: Index, vertex: Index) -> Floats:
-        """Distances of points of the mesh from segments of the domain."""
-        a, b = (self.corners[i] for i in self.domain.segments[segment].T)
-        d, w = b - a, self.points[vertex] - a
-        t = np.clip((w * d).sum(axis=1) / (d * d).sum(axis=1), 0, 1)
-        out: Floats = np.hypot(*(w - t[:, None] * d).T)
-        return out
-
-    def _along(self, segment: Index, vertex: Index) -> Floats:
-        """How far along its segment each point of the mesh is."""
-        a, b = (self.corners[i] for i in self.domain.segments[segment].T)
-        out: Floats = ((self.points[vertex] - a) * (b - a)).sum(axis=1)
-        return out
-
-    @cached_property
-    def on_runs(self) -> tuple[Index, Floats, Index]:
-        """Vertices of constrained edges on curves, in order: the run, the parameter, the vertex."""
-        vertices = np.unique(self.mesh.edges)
-        run, u, k = places_on_runs(self.domain, self.mesh.points[vertices], self.true_tolerance)
-        return run, u, vertices[k]
-
-    @cached_property
-    def run_steps(self) -> tuple[Index, Floats, Index, Ints]:
-        """Steps along runs, in order: the run, both parameters, both vertices, and the edge, or -1.
-
-        A run that does not begin or end at its corner has a step without an edge too.
-        """
-        run, u, v = self.on_runs
-        n = len(self.mesh.points)
-        inner = np.flatnonzero(np.diff(run) == 0)
-        pairs = np.stack([v[inner], v[inner + 1]], axis=1)
-        keys = edge_keys(self.mesh.edges[:, 0], self.mesh.edges[:, 1], n)
-        order = np.argsort(keys)
-        wanted = edge_keys(pairs[:, 0], pairs[:, 1], n)
-        place = np.minimum(np.searchsorted(keys, wanted, sorter=order), len(keys) - 1)
-        edge = np.where(keys[order[place]] == wanted, order[place], -1)
-        return run[inner], np.stack([u[inner], u[inner + 1]], axis=1), pairs, edge
+from .domain_subject import DomainSubject
+from .rows import Row
+from .subject import Bools, Finding, Floats, Index, Ints, finding
 
 
 def points_present(s: DomainSubject) -> Finding:
     """Every point of the domain is a point of the mesh."""
-    xy = s.domain.points
-    is_vertex = s.domain.curved.is_vertex
+    corners = s.lines.corners
 
     def show(i: int) -> str:
-        return f"point {i} of the domain ({float(xy[i, 0])!r}, {float(xy[i, 1])!r})"
+        x, y = corners[i].tolist()
+        return f"point {number[i]} of the domain ({x!r}, {y!r})"
 
-    bad = np.flatnonzero((s.vertices < 0) & is_vertex)
-    return finding(
-        bad, f"{np.count_nonzero(is_vertex)} points", "points of the domain are missing", show
-    )
+    number = np.flatnonzero(s.domain.curved.is_vertex)
+    bad = np.flatnonzero(s.vertices < 0)
+    return finding(bad, f"{len(corners)} points", "points of the domain are missing", show)
 
 
 def segments_present(s: DomainSubject) -> Finding:
-    """Every segment of the domain is a chain of constrained edges on it, with its tag.
-
-    The first step along it begins at its first point, each further one where the one before ends,
-    and the last ends at its last point.
-    """
-    segment, edge, backwards = s.steps
-    domain = s.domain
-    begin, end = (
-        s.mesh.edges[edge, backwards.astype(int)],
-        s.mesh.edges[edge, 1 - backwards.astype(int)],
-    )
-    last = np.append(segment[1:] != segment[:-1], True)[: len(segment)]
-    first = np.roll(last, 1)
-    a, b = s.vertices[domain.segments].T
-    leaves = np.where(last, b[segment], np.roll(begin, -1)) != end
-    starts_late = first & (begin != a[segment])
-    other_tag = s.mesh.edge_tags[edge] != domain.segment_tags[segment]
-
-    broken = domain.curved.segment_runs < 0
-    broken[segment] = False  # those without a step stay broken
-    broken[segment[leaves | starts_late]] = True
-    mistagged = np.zeros(len(domain.segments), bool)
-    mistagged[segment[other_tag]] = True
-
-    def show(i: int) -> str:
-        (x0, y0), (x1, y1) = domain.points[domain.segments[i]].tolist()
-        why = "is no chain of constrained edges" if broken[i] else "has edges with another tag"
-        return f"segment {i} from ({x0!r}, {y0!r}) to ({x1!r}, {y1!r}) {why}"
-
-    good = f"{len(s.straight)} segments, to {s.true_tolerance:.2g}"
-    wrong = "segments of the domain are missing or have another tag"
-    return finding(np.flatnonzero(broken | mistagged), good, wrong, show)
+    """Every segment is a row of constrained edges from its first point to its last."""
+    return _lines_present(s, "segments", np.arange(s.lines.n_straight))
 
 
 def curves_present(s: DomainSubject) -> Finding:
-    """Every run of curves is a chain of constrained edges, from corner to corner, with its tag."""
-    curved, domain = s.domain.curved, s.domain
-    run, _, _, edge = s.run_steps
-    tag = np.zeros(len(curved.runs), np.int64)
-    on_run = curved.segment_runs >= 0
-    tag[curved.segment_runs[on_run]] = domain.segment_tags[on_run]
+    """Every curve, from corner to corner, is a row of constrained edges."""
+    return _lines_present(s, "curves", np.arange(s.lines.n_straight, len(s.lines)))
 
-    broken = np.ones(len(curved.runs), bool)
-    broken[run] = False
-    broken[run[edge < 0]] = True
-    found, u, _ = s.on_runs
-    for end in (np.zeros(len(broken)), np.array([r.length for r in curved.runs])):
-        met = np.zeros(len(broken), bool)
-        met[found[u == end[found]]] = True
-        broken |= ~met
-    mistagged = np.zeros(len(broken), bool)
-    mistagged[run[(edge >= 0) & (s.mesh.edge_tags[edge] != tag[run])]] = True
 
-    def show(r: int) -> str:
-        (x0, y0), (x1, y1) = curved.runs[r].start.tolist(), curved.runs[r].end.tolist()
-        first = int(np.flatnonzero(curved.segment_runs == r)[0])
-        why = "is no chain of constrained edges" if broken[r] else "has edges with another tag"
-        return f"{curved.describe(first)} from ({x0!r}, {y0!r}) to ({x1!r}, {y1!r}) {why}"
+def _lines_present(s: DomainSubject, what: str, lines: Index) -> Finding:
+    def show(line: int) -> str:
+        return f"{s.line_text(line)} is no row of constrained edges"
 
-    good = f"{len(broken)} runs, to {s.true_tolerance:.2g}"
-    wrong = "curves of the domain are missing or have another tag"
-    return finding(np.flatnonzero(broken | mistagged), good, wrong, show)
+    bad = lines[s.row_of_line[lines] < 0]
+    return finding(bad, f"{len(lines)} {what}", f"{what} of the domain are missing", show)
 
 
 def edges_on_segments(s: DomainSubject) -> Finding:
-    """Every constrained edge lies on a segment of the domain, or is a chord of a curve of it."""
-    stray = np.ones(len(s.mesh.edges), bool)
-    stray[s.steps[1]] = False
-    if s.domain.curved.runs:
-        edge = s.run_steps[3]
-        stray[edge[edge >= 0]] = False
+    """Every constrained edge belongs to the row of a segment or a curve."""
+    stray = np.zeros(len(s.mesh.edges), bool)
+    for row in s.other_rows:
+        stray[row.edges] = True
 
     def show(e: int) -> str:
         return f"constrained edge {s.at(*s.mesh.edges[e])}"
 
-    wrong = "constrained edges are on no segment of the domain"
-    return finding(np.flatnonzero(stray), "", wrong, show)
+    wrong = "constrained edges are on no segment or curve of the domain"
+    return finding(np.flatnonzero(stray & ~s.is_on_missing_line), "", wrong, show)
+
+
+class Inner(NamedTuple):
+    """The vertices of rows but their ends, in order: their lines and numbers, (k,)."""
+
+    line: Ints
+    vertex: Ints
+
+    @classmethod
+    def of(cls, rows: list[Row | None], lines: Index) -> Inner:
+        """Those of the rows of some lines."""
+        mine = [(k, rows[k]) for k in lines.tolist()]
+        inner = [(k, row.inner) for k, row in mine if row is not None]
+        line = np.repeat([k for k, _ in inner], [len(v) for _, v in inner]).astype(np.int64)
+        return cls(line, np.concatenate([np.empty(0, np.int64), *(v for _, v in inner)]))
+
+
+def vertices_on_segments(s: DomainSubject) -> Finding:
+    """The vertices of the row of a segment lie on it, one after the other."""
+    return _vertices_on_lines(s, "segments", np.arange(s.lines.n_straight))
+
+
+def vertices_on_curves(s: DomainSubject) -> Finding:
+    """The vertices of the row of a curve lie on it, one after the other."""
+    return _vertices_on_lines(s, "curves", np.arange(s.lines.n_straight, len(s.lines)))
+
+
+def _vertices_on_lines(s: DomainSubject, what: str, lines: Index) -> Finding:
+    inner = Inner.of(s.rows, lines)
+    along, off = s.places(inner.line, inner.vertex)
+    beside = off > s.tolerance
+    early = ~beside & _out_of_order(s, inner, np.where(beside, np.nan, along))
+
+    def show(k: int) -> str:
+        text = s.line_text(int(inner.line[k]))
+        if beside[k]:
+            return f"point {s.at(inner.vertex[k])} is {off[k]:.3g} off {text}"
+        return f"point {s.at(inner.vertex[k])} is not between its neighbours on {text}"
+
+    good = f"{len(inner.line)} points, to {s.tolerance:.2g}"
+    wrong = f"points are not where they belong on {what}"
+    return finding(np.flatnonzero(beside | early), good, wrong, show)
+
+
+def _out_of_order(s: DomainSubject, inner: Inner, along: Floats) -> Bools:
+    """Which inner vertices do not come after those before them, or not before the end."""
+    lines = s.lines
+    first, last = _ends_along(s, inner.line)
+    bad: Bools = (along < first) | (along > last)
+    known = np.flatnonzero(~np.isnan(along) & ~bad)
+    line, place = inner.line[known], along[known]
+    back = (line[1:] == line[:-1]) & (
+        np.where(line[1:] < lines.n_straight, place[1:] < place[:-1], place[1:] <= place[:-1])
+    )
+    bad[known[1:][back]] = True
+    return bad
+
+
+def _ends_along(s: DomainSubject, line: Ints) -> tuple[Floats, Floats]:
+    """Where lines (k,) begin and end, in terms of `Places.along`."""
+    ends = s.lines.corners[s.lines.ends[line]]
+    p = s.scale(ends)
+    d = p[:, 1] - p[:, 0]
+    rows, major = np.arange(len(line)), np.abs(d).argmax(axis=1)
+    sign = np.sign(d[rows, major])
+    straight = line < s.lines.n_straight
+    first = np.where(straight, sign * p[rows, 0, major], 0.0)
+    last = np.where(straight, sign * p[rows, 1, major], s.lines.lengths[line])
+    return first, last
+
+
+def tags_of_domain(s: DomainSubject) -> Finding:
+    """The edges of a row have the tag of their segment or curve."""
+    rows = [(line, row) for line, row in enumerate(s.rows) if row is not None]
+    edge = np.concatenate([np.empty(0, np.int64), *(row.edges for _, row in rows)])
+    line = np.repeat([k for k, _ in rows], [len(row.edges) for _, row in rows]).astype(np.int64)
+    order = np.argsort(edge)
+    edge, line = edge[order], line[order]
+    expected = s.domain.segment_tags[s.lines.segments[line]]
+    found = s.mesh.edge_tags[edge]
+
+    def show(k: int) -> str:
+        text = f"constrained edge {edge[k]}, {s.at(*s.mesh.edges[edge[k]])}"
+        return f"{text}: tag {found[k]}, but {s.line_text(int(line[k]))} has {expected[k]}"
+
+    wrong = "constrained edges have another tag than their segment or curve"
+    return finding(np.flatnonzero(found != expected), f"{len(edge)} edges", wrong, show)
+
+
+def frozen_undivided(s: DomainSubject) -> Finding:
+    """Every frozen segment is one edge; see `Domain.with_frozen`."""
+    divided = np.array([row is not None and len(row.edges) > 1 for row in s.rows], bool)
+    bad = np.flatnonzero(divided & s.lines.is_frozen)
+    good = f"{np.count_nonzero(s.lines.is_frozen)} frozen segments"
+    return finding(bad, good, "frozen segments are divided", s.line_text)
 
 
 def area_of_domain(s: DomainSubject) -> Finding:
-    """The triangles have the area of the domain, to within what points on segments may be off.
-
-    That between curves and their chords is what a mesh of curves has less, or more.
-    """
+    """The triangles have the area of the domain, to what its points and rounding allow."""
     a, b = (s.domain.points[i] for i in s.domain.segments.T)
-    tolerance = s.true_tolerance * float(np.hypot(*(b - a).T).sum())
-    found, wanted = float(s.mesh.areas.sum()), s.domain.area
-    if s.domain.curved.runs:
-        beside = _areas_beyond_border(s)
-        wanted -= float(beside.sum())
-        tolerance += QUADRATURE * float(np.abs(beside).sum())
-    note = f"{found!r}, of the domain {wanted!r}"
-    return Finding(int(not abs(found - wanted) <= tolerance), f"{note}, to {tolerance:.2g}")
-
-
-def _areas_beyond_border(s: DomainSubject) -> Floats:
-    """Areas between border edges and their curves, positive where the curve is outside."""
-    run, u, pairs, _ = s.run_steps
-    n = len(s.mesh.points)
-    border = s.sides.ends(s.sides.border)  # the mesh is on their left
-    keys = border[:, 0] * n + border[:, 1]
-    on_left = np.isin(pairs[:, 0] * n + pairs[:, 1], keys)
-    on_right = np.isin(pairs[:, 1] * n + pairs[:, 0], keys)
-    areas = s.domain.curved.areas_beside(run, u)
-    out: Floats = areas * (on_left.astype(float) - on_right.astype(float))
-    return out
+    p = s.mesh.points[s.mesh.triangles]
+    u, v = (np.hypot(*(p[:, i] - p[:, 0]).T) for i in (1, 2))
+    tolerance = s.tolerance * float(np.hypot(*(b - a).T).sum())
+    tolerance += 8 * float(np.finfo(float).eps) * float((u * v).sum())
+    found, expected = float(s.mesh.areas.sum()), s.domain.area
+    note = f"{found!r}, of the domain {expected!r}, to {tolerance:.2g}"
+    return Finding(int(not abs(found - expected) <= tolerance), note)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 
-from .subject import SHOWN, Finding, Index, Ints, Subject, edge_keys, finding
+from .subject import SHOWN, Finding, Index, Subject, edge_keys, finding
 
 
 def not_empty(s: Subject) -> Finding:
@@ -20,19 +23,28 @@ def finite_points(s: Subject) -> Finding:
 
 
 def indices_in_range(s: Subject) -> Finding:
-    """Triangles and constrained edges name points that exist."""
-    n, m = len(s.mesh.points), len(s.mesh.triangles)
+    """Triangles, constrained edges and what is required or kept name what exists."""
+    mesh = s.mesh
+    n, k = len(mesh.points), len(mesh.edges)
+    bad = [
+        *_outside(mesh.triangles, n, "triangle", "points"),
+        *_outside(mesh.edges, n, "constrained edge", "points"),
+        *_outside(mesh.required_points[:, None], n, "required point", "points"),
+        *_outside(mesh.required_edges[:, None], k, "required edge", "constrained edges"),
+    ]
+    wrong = "rows name points or edges that do not exist"
+    return finding(np.arange(len(bad)), f"{n} points", wrong, lambda i: bad[i]())
 
-    def outside(rows: Index) -> Ints:
-        return np.flatnonzero(((rows < 0) | (rows >= n)).any(axis=1))
+
+def _outside(rows: Index, n: int, what: str, of: str) -> list[Callable[[], str]]:
+    """The rows with a number outside of 0 to n - 1, each ready to be described."""
 
     def show(row: int) -> str:
-        if row < m:
-            return f"triangle {row}: {s.mesh.triangles[row].tolist()}, with {n} points"
-        return f"constrained edge {row - m}: {s.mesh.edges[row - m].tolist()}, with {n} points"
+        numbers = ", ".join(map(str, rows[row].tolist()))
+        return f"{what} {row}: [{numbers}], with {n} {of}"
 
-    bad = np.concatenate([outside(s.mesh.triangles), m + outside(s.mesh.edges)])
-    return finding(bad, f"{n} points", "triangles or edges name points that do not exist", show)
+    bad = np.flatnonzero(((rows < 0) | (rows >= n)).any(axis=1))
+    return [partial(show, int(row)) for row in bad]
 
 
 def positive_triangles(s: Subject) -> Finding:
@@ -124,16 +136,67 @@ def border_is_constrained(s: Subject) -> Finding:
 
 
 def tags(s: Subject) -> Finding:
-    """No tag is negative. One without a name is allowed: files carry bare numbers."""
+    """No number is negative that the domain does not give.
+
+    One without a name is allowed: files carry bare numbers.
+    """
     mesh = s.mesh
     tagged = np.concatenate([mesh.edge_tags, mesh.regions])
     k = len(mesh.edge_tags)
+    bad = tagged < 0
+    if mesh.domain is not None:
+        known = (mesh.domain.segment_tags, mesh.domain.seed_regions)
+        bad[:k] &= ~np.isin(mesh.edge_tags, known[0])
+        bad[k:] &= ~np.isin(mesh.regions, known[1])
 
     def show(i: int) -> str:
         if i < k:
             return f"constrained edge {s.at(*mesh.edges[i])}: tag {tagged[i]}"
         return f"triangle {i - k}: region {tagged[i]}"
 
-    names = len(mesh.names) + len(mesh.region_names)
     wrong = "constrained edges or triangles have a negative number"
-    return finding(np.flatnonzero(tagged < 0), f"{names} names", wrong, show)
+    return finding(np.flatnonzero(bad), "", wrong, show)
+
+
+def names(s: Subject) -> Finding:
+    """Names are text, each stands for a number of its own, and none for 0.
+
+    Those of the domain are as it has them.
+    """
+    mesh, domain = s.mesh, s.mesh.domain
+    known = ({}, {}) if domain is None else (domain.names, domain.region_names)
+    tables = (("tag", mesh.names, known[0]), ("region", mesh.region_names, known[1]))
+    bad = []
+    for what, table, of_domain in tables:
+        owner: dict[int, str] = {}
+        for name, number in table.items():
+            if of_domain.get(name) == number:
+                continue
+            if not isinstance(name, str) or not name:
+                bad.append(f"{name!r} for {what} {number}: a name is a text")
+            elif not isinstance(number, (int, np.integer)):
+                bad.append(f"{name!r}: {what} {number!r} is no whole number")
+            elif number == 0:
+                bad.append(f"{name!r}: {what} 0 stands for what has no name")
+            elif number in owner:
+                bad.append(f"{owner[number]!r} and {name!r} are both {what} {number}")
+            else:
+                owner[number] = name
+    count = len(mesh.names) + len(mesh.region_names)
+    wrong = "names are ambiguous"
+    return finding(np.arange(len(bad)), f"{count} names", wrong, bad.__getitem__)
+
+
+def kept_once(s: Subject) -> Finding:
+    """No two vertices are the same one of the mesh before."""
+    kept = s.mesh.kept
+    if kept is None:
+        return Finding(0)
+    order = np.argsort(kept, kind="stable")
+    again = np.append(False, kept[order[1:]] == kept[order[:-1]])
+    bad = np.sort(order[(again & (kept[order] >= 0)) | (kept[order] < -1)])
+
+    def show(v: int) -> str:
+        return f"point {s.at(v)}: kept from {kept[v]}"
+
+    return finding(bad, "", "points are kept from no vertex, or from one twice", show)

@@ -67,6 +67,12 @@ class Subject:
         """The sides of the triangles, edge by edge."""
         return Sides.of(self.mesh)
 
+    @cached_property
+    def border_sweep(self) -> tuple[tuple[int, int], NDArray[np.int32]]:
+        """Two border edges that cross, or (-1, -1), and the triangles on the left of each."""
+        ends = self.sides.ends(self.sides.border).astype(np.int32)
+        return _core.sweep_border(self.points, ends)
+
     def orient(self, a: Index, b: Index, c: Index) -> NDArray[np.int8]:
         """Exact signs of the areas of the triangles (a, b, c), given by point numbers."""
         p = self.points

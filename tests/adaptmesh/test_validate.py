@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+from dataclasses import replace
 
 import hypothesis.extra.numpy as hnp
 import numpy as np
@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from adaptmesh import on_runs
-from adaptmesh.curved import Curved
+import adaptmesh as am
+from adaptmesh import Domain, on_runs
 from adaptmesh.errors import AdaptmeshError
 from adaptmesh.mesh import Mesh
 from adaptmesh.validate import InvalidMeshError, Validity, validate
@@ -73,7 +73,7 @@ def test_two_parts_may_touch_in_a_point():
     points = [[0, 0], [1, 0], [0, 1], [-1, 0], [0, -1]]
     validity = validate(bounded(points, [[0, 1, 2], [0, 3, 4]]))
     assert validity.ok
-    assert "1 points where the border touches" in validity["single turn"].note
+    assert "pieces of border: 1" in validity["covered once"].note
 
 
 def test_a_hole_may_touch_the_border_in_a_point():
@@ -190,13 +190,21 @@ def test_two_turns_around_a_point():
     fan = [[i, (i + 1) % n, n] for i in range(n)]
     check = validate(bounded(points, fan))["single turn"]
     assert check.count == 1
-    assert "2 turns in 1 fans" in check.offenders[0]
+    assert check.offenders == ("point 10 (0.03, 0.02): 2 turns",)
 
 
 def test_overlapping_fans():
     # two triangles share the point 0; each is positive, together they make half a turn at most
     points = [[0, 0], [4, 0], [1, 4], [4, 1], [0.5, 5]]
-    assert "single turn" in broken(bounded(points, [[0, 1, 2], [0, 3, 4]]))
+    assert broken(bounded(points, [[0, 1, 2], [0, 3, 4]])) == ["simple border"]
+
+
+def test_a_fan_within_another():
+    # no two edges cross: only the layers of triangles say that one lies on the other
+    points = [[0, 0], [6, -6], [6, 6], [2, -1], [2, 1]]
+    validity = validate(bounded(points, [[0, 1, 2], [0, 3, 4]]))
+    assert [check.name for check in validity.broken] == ["covered once"]
+    assert "edge 3 (2.0, -1.0), 4 (2.0, 1.0)" in str(validity["covered once"].offenders)
 
 
 def test_border_that_crosses_itself():
@@ -216,7 +224,9 @@ def test_part_inside_another():
     points = [[0, 0], [9, 0], [0, 9], [1, 1], [2, 1], [1, 2]]
     validity = validate(bounded(points, [[0, 1, 2], [3, 4, 5]]))
     assert [check.name for check in validity.broken] == ["covered once"]
-    assert "point 3 (1.0, 1.0) in triangle 0" in validity["covered once"].offenders[0]
+    (first, *_), check = validity["covered once"].offenders, validity["covered once"]
+    assert check.count == 3
+    assert first.startswith("edge 3 (1.0, 1.0), 4 (2.0, 1.0) of triangle 1: 2 triangles")
 
 
 def test_ring_wound_twice_around():
@@ -238,15 +248,8 @@ def test_ring_wound_twice_around():
 
 
 def square_domain(**changes):
-    domain = {
-        "points": SQUARE,
-        "segments": RIM,
-        "segment_tags": np.array([1, 0, 2, 0]),
-        "area": 1.0,
-    }
-    domain |= changes
-    curved = Curved.nothing(len(domain["points"]), len(domain["segments"]))
-    return SimpleNamespace(**domain, curved=curved, corners_found=None)
+    arguments = {"points": SQUARE, "segments": RIM, "names": {1: [0], 2: [2]}}
+    return Domain(**{**arguments, **changes})
 
 
 def square_mesh(n=3, tags=(1, 0, 2, 0), **changes) -> Mesh:
@@ -266,28 +269,24 @@ def test_domain_met():
 def test_domain_on_a_slant_is_met_to_rounding():
     turn = np.array([[0.6, 0.8], [-0.8, 0.6]]) / 3
     mesh = square_mesh(7)
-    domain = square_domain(points=SQUARE @ turn, area=1 / 9)
     turned = Mesh(
         mesh.points @ turn,
         mesh.triangles,
         edges=mesh.edges,
         edge_tags=mesh.edge_tags,
-        domain=domain,
+        domain=square_domain(points=SQUARE @ turn),
     )
     assert validate(turned).ok, str(validate(turned))
 
 
-def test_segment_with_another_tag():
+def test_edges_with_another_tag():
     validity = validate(square_mesh(tags=(1, 0, 0, 0)))
-    assert [check.name for check in validity.broken] == ["segments present"]
-    assert "segment 2" in validity["segments present"].offenders[0]
-    assert "another tag" in validity["segments present"].offenders[0]
+    assert [check.name for check in validity.broken] == ["tags of domain"]
+    assert "tag 0, but segment 2 from (1.0, 1.0) to (0.0, 1.0) has 2" in str(validity)
 
 
 def test_segment_missing():
-    domain = square_domain(
-        segments=np.concatenate([RIM, [[0, 2]]]), segment_tags=np.array([1, 0, 2, 0, 0])
-    )
+    domain = square_domain(segments=np.concatenate([RIM, [[0, 2]]]))
     validity = validate(square_mesh(domain=domain))
     assert [check.name for check in validity.broken] == ["segments present"]
     assert "segment 4 from (0.0, 0.0) to (1.0, 1.0)" in validity["segments present"].offenders[0]
@@ -295,18 +294,19 @@ def test_segment_missing():
 
 def test_segment_with_a_gap():
     mesh = square_mesh(3)
-    inner = [[5, 6], [6, 7], [9, 10]]  # two thirds of y = 1/3 and a bit of y = 2/3
+    inner = [[4, 5], [5, 6], [9, 10]]  # two thirds of y = 1/3 and a bit of y = 2/3
     edges = np.concatenate([mesh.edges, inner])
     tags = np.concatenate([mesh.edge_tags, [0, 0, 0]])
-    points = np.concatenate([SQUARE, [[0, 1 / 3], [1, 1 / 3], [1 / 3, 2 / 3], [2 / 3, 2 / 3]]])
     domain = square_domain(
-        points=points,
-        segments=np.concatenate([RIM, [[4, 5], [6, 7]]]),
-        segment_tags=np.array([1, 0, 2, 0, 0, 0]),
+        points=np.concatenate([SQUARE, mesh.points[[4, 7, 9, 10]]]),
+        segments=[[0, 1], [1, 5], [5, 2], [2, 3], [3, 4], [4, 0], [4, 5], [6, 7]],
+        names={1: [0], 2: [3]},
     )
-    check = validate(square_mesh(3, edges=edges, edge_tags=tags, domain=domain))["segments present"]
+    validity = validate(square_mesh(3, edges=edges, edge_tags=tags, domain=domain))
+    assert [check.name for check in validity.broken] == ["segments present"]
+    check = validity["segments present"]
     assert check.count == 1
-    assert check.offenders[0].startswith("segment 4 ")
+    assert check.offenders[0].startswith("segment 6 ")
 
 
 def test_edge_on_no_segment():
@@ -318,17 +318,50 @@ def test_edge_on_no_segment():
 
 def test_point_of_the_domain_missing():
     domain = square_domain(points=np.concatenate([SQUARE, [[0.4, 0.4]]]))
-    assert broken(square_mesh(domain=domain)) == ["points present"]
-
-
-def test_another_area():
-    assert broken(square_mesh(domain=square_domain(area=0.5))) == ["area of domain"]
+    validity = validate(square_mesh(domain=domain))
+    assert [check.name for check in validity.broken] == ["points present"]
+    assert validity["points present"].offenders == ("point 4 of the domain (0.4, 0.4)",)
 
 
 def test_corner_that_is_off_by_more_than_the_tolerance():
     points = SQUARE.copy()
     points[2] += 1e3 * on_runs.TOLERANCE
-    assert "segments present" in broken(square_mesh(domain=square_domain(points=points)))
+    mesh = square_mesh(domain=square_domain(points=points))
+    assert broken(mesh)[0] == "points present"
+    assert validate(mesh, tolerance=1e4 * on_runs.TOLERANCE).ok
+
+
+def test_tolerance_is_a_length():
+    with pytest.raises(ValueError, match="tolerance=-1"):
+        validate(square_mesh(), tolerance=-1)
+
+
+def test_names_are_not_ambiguous():
+    named = lambda **names: Mesh(SQUARE, HALVES, edges=RIM, names=names)  # noqa: E731
+    assert validate(named(wall=1, inlet=2)).ok
+    assert broken(named(wall=1, inlet=1)) == ["names"]
+    assert broken(named(wall=0)) == ["names"]
+    assert "'wall': tag 0" in validate(named(wall=0))["names"].offenders[0]
+
+
+def test_no_vertex_is_kept_twice():
+    assert validate(Mesh(SQUARE, HALVES, edges=RIM, kept=[-1, -1, 3, 2])).ok
+    assert broken(Mesh(SQUARE, HALVES, edges=RIM, kept=[-1, 3, 3, 2])) == ["kept once"]
+    assert broken(Mesh(SQUARE, HALVES, edges=RIM, kept=[-2, 3, 1, 2])) == ["kept once"]
+
+
+def test_required_numbers_out_of_range():
+    assert broken(Mesh(SQUARE, HALVES, edges=RIM, required_points=[4])) == ["indices in range"]
+    assert broken(Mesh(SQUARE, HALVES, edges=RIM, required_edges=[-1])) == ["indices in range"]
+
+
+def test_numbers_that_only_the_domain_gives_may_be_negative():
+    domain = square_domain(names={-3: [0]}, regions={-4: (0.5, 0.5)})
+    mesh = am.generate(domain, 0.5)
+    assert mesh.edge_tags.min() == -3
+    assert mesh.regions.min() == -4
+    assert validate(mesh).ok
+    assert "tags" in broken(replace(mesh, domain=None))
 
 
 # --- the report -----------------------------------------------------------------------------

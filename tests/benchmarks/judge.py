@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
 import adaptmesh as am
 from adaptmesh.invariants import fidelity
+from adaptmesh.invariants.domain_subject import DomainSubject
 from metrics import mesh_edges
 
 # Peers write coordinates with twelve digits, so points are off their segments by so much of the
@@ -41,25 +40,18 @@ def judge(problem, points, triangles):
     return out
 
 
-class _Rounded(fidelity.DomainSubject):
-    """A mesh held against its domain with a tolerance for rounded coordinates."""
-
-    @cached_property
-    def tolerance(self):
-        return ROUNDING * float(np.ptp(self.corners, axis=0).max())
-
-
 def _broken(mesh):
     """The names of the invariants that do not hold."""
     bare = am.Mesh(mesh.points, mesh.triangles, edges=mesh.edges)
     broken = [check.name for check in bare.validate() if not check]
     if broken:
         return broken
-    subject = _Rounded(mesh)
+    subject = DomainSubject(mesh, ROUNDING * float(np.ptp(mesh.domain.points, axis=0).max()))
     checks = {
         "points present": fidelity.points_present(subject).broken == 0,
         "segments present": fidelity.segments_present(subject).broken == 0,
         "edges on segments": fidelity.edges_on_segments(subject).broken == 0,
+        "vertices on segments": fidelity.vertices_on_segments(subject).broken == 0,
         "area": abs(mesh.areas.sum() / mesh.domain.area - 1) < AREA_TOLERANCE,
     }
     return [name for name, holds in checks.items() if not holds]

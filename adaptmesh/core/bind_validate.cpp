@@ -1,0 +1,30 @@
+// What the checks of a mesh ask of the core, as Python sees it.
+#include "adaptmesh/core/bindings.hpp"
+#include "adaptmesh/core/border_sweep.hpp"
+
+namespace {
+
+using namespace adaptmesh;
+
+nb::tuple sweep_border_arrays(const Points& points_in, const IndexPairs& edges_in) {
+    const std::vector<Point> points = to_points(points_in);
+    const std::vector<Segment> edges = to_segments(edges_in);
+    BorderSweep found;
+    {
+        nb::gil_scoped_release release;
+        SignalPoll poll;
+        found = sweep_border(points, edges, poll);
+    }
+    const std::size_t n = found.layers.size();
+    return nb::make_tuple(nb::make_tuple(found.first, found.second),
+                          to_numpy(std::move(found.layers), {n}));
+}
+
+}  // namespace
+
+void bind_validate(nb::module_& m) {
+    m.def("sweep_border", &sweep_border_arrays, nb::arg("points"), nb::arg("edges"),
+          "((e, f), layers): two border edges that have more in common than an end, or (-1, -1); "
+          "and, if there are none, how many triangles lie on the left of each edge. Edges have the "
+          "mesh on their left; their points are distinct and finite. Exact, n log n.");
+}
