@@ -13,6 +13,7 @@ from metrics import ControlSpace
 
 from .budget import Budget, Progress
 from .chains import vertices_at
+from .cleaned import with_edges_once
 from .domain import Domain
 from .frozen import frozen_domain
 from .generate import generate
@@ -78,6 +79,7 @@ def adapt(
     Mesh
     """
     check_is_mesh(mesh)
+    mesh = with_edges_once(mesh)
     if mesh.domain is not None and straight_tolerance is not None:
         raise ValueError(
             "straight_tolerance finds the domain of a mesh; this mesh has one: leave it out"

@@ -38,6 +38,9 @@ MESH_TURN = 60.0
 OUTLINE_LOOKS = 4
 """In so many steps a curve is looked at along each chord of an outline."""
 
+LOOKS, STRAIGHT_LOOKS = np.linspace(0, 1, 9), np.array([0.0, 1.0])
+"""Where a curve is looked at to see how large it is, besides its kinks; and a straight one."""
+
 GAUSS = np.polynomial.legendre.leggauss(10)
 
 
@@ -175,15 +178,17 @@ def skeleton_of(
     join_tolerance: float | None,
 ) -> Skeleton:
     """Join curves and inscribe a polygon; arguments as those of `Domain.from_curves`."""
-    _check_curves(curves)
-    extent = extent_of(curves)
+    some_points = _check_curves(curves)
+    places = np.concatenate(some_points)
+    extent = float(np.ptp(places, axis=0).max())
     if join_tolerance is None:
-        join_tolerance = max(JOINED * extent, JOINED_PLACES * last_place_of(curves))
+        last_place = float(np.spacing(np.abs(places).max()))
+        join_tolerance = max(JOINED * extent, JOINED_PLACES * last_place)
     if not 0 <= join_tolerance < extent:
         raise DomainError(
             f"join_tolerance={join_tolerance}: a length from 0 to the extent, {extent:g}, is wanted"
         )
-    _check_extents(curves, join_tolerance)
+    _check_extents(curves, some_points, join_tolerance)
     if not 0 <= corner_angle <= 180:
         raise DomainError(f"corner_angle={corner_angle}: degrees from 0 to 180 are wanted")
     joined = join(curves, tags, min(corner_angle, MESH_TURN), join_tolerance, isolated)
@@ -225,8 +230,8 @@ def skeleton_of(
     return Skeleton(points, read_only(segments), read_only(tags[owners]), curved)
 
 
-def _check_curves(curves: Sequence[Curve]) -> None:
-    """Refuse what are no curves, or none of finite numbers."""
+def _check_curves(curves: Sequence[Curve]) -> list[Floats]:
+    """Refuse what are no curves, or none of finite numbers; returns a few points of each."""
     if not curves:
         raise DomainError("no curves: give those that bound the domain, from adaptmesh.curves")
     for i, curve in enumerate(curves):
@@ -234,19 +239,26 @@ def _check_curves(curves: Sequence[Curve]) -> None:
             raise DomainError(
                 f"curve {i} is a {type(curve).__name__}: make it one of adaptmesh.curves"
             )
-        domain_input.checked_points(_some_points(curve), f"curve {i}: point")
+    each = [_some_points(curve) for curve in curves]
+    if not (np.abs(np.concatenate(each)) <= domain_input.LARGEST).all():
+        for i, places in enumerate(each):
+            domain_input.checked_points(places, f"curve {i}: point", least=0)
+    return each
 
 
-def _check_extents(curves: Sequence[Curve], join_tolerance: float) -> None:
+def _check_extents(
+    curves: Sequence[Curve], some_points: list[Floats], join_tolerance: float
+) -> None:
     """Refuse curves that rounding has eaten, but for those within the tolerance: they vanish."""
-    for i, curve in enumerate(curves):
-        places = _some_points(curve)
-        extent, far = float(np.ptp(places, axis=0).max()), float(np.abs(places).max())
-        vanishes = 2 * extent <= join_tolerance and not curve.is_closed
-        if extent <= IN_PLACES * np.finfo(float).eps * far and not vanishes:
+    first = np.cumsum([0, *map(len, some_points[:-1])])
+    places = np.concatenate(some_points)
+    extent = np.maximum.reduceat(places, first) - np.minimum.reduceat(places, first)
+    extent, far = extent.max(axis=1), np.maximum.reduceat(np.abs(places).max(axis=1), first)
+    for i in np.flatnonzero(extent <= IN_PLACES * np.finfo(float).eps * far).tolist():
+        if 2 * extent[i] > join_tolerance or curves[i].is_closed:
             raise DomainError(
-                f"{name_of_curve(curves, i)} is {extent:.3g} long or wide, and coordinates of "
-                f"{far:g} are rounded to {np.spacing(far):.1g}: move the origin near it"
+                f"{name_of_curve(curves, i)} is {extent[i]:.3g} long or wide, and coordinates of "
+                f"{far[i]:g} are rounded to {np.spacing(far[i]):.1g}: move the origin near it"
             )
 
 
@@ -278,10 +290,7 @@ def extent_of(curves: Sequence[Curve]) -> float:
     return float(np.ptp(points, axis=0).max())
 
 
-def last_place_of(curves: Sequence[Curve]) -> float:
-    """The unit in the last place of the largest coordinates, from a few places on each curve."""
-    return float(np.spacing(max(np.abs(_some_points(curve)).max() for curve in curves)))
-
-
 def _some_points(curve: Curve) -> Floats:
-    return curve.point(np.append(np.linspace(0, 1, 9), curve.breaks))
+    """Points on a curve, its ends and kinks among them; no others of one that is straight."""
+    inner = STRAIGHT_LOOKS if curve.is_straight else LOOKS
+    return curve.point(np.append(inner, curve.breaks))

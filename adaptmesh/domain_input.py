@@ -227,8 +227,16 @@ def name_of_number(
 
 def labelled(tags: NDArray[np.signedinteger]) -> dict[Label, list[int]]:
     """The items with each number but 0, as `Domain` takes them, to go with names and numbers."""
-    found = np.unique(tags[tags != 0]).tolist()
-    return {tag: np.flatnonzero(tags == tag).tolist() for tag in found}
+    return {number: rows.tolist() for number, rows in rows_of_each(tags).items() if number}
+
+
+def rows_of_each(numbers: NDArray[np.integer]) -> dict[int, NDArray[np.intp]]:
+    """The rows with each number, ascending, in the order of the numbers."""
+    order = np.argsort(numbers, kind="stable")
+    ordered = numbers[order]
+    first = np.flatnonzero(ordered[1:] != ordered[:-1]) + 1
+    groups = np.split(order, first) if len(order) else []
+    return {int(numbers[rows[0]]): rows for rows in groups}
 
 
 def is_level(heights: Floats, xy: Floats) -> bool:

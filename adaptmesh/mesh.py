@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from metrics.measure import mesh_edges
 
 from . import _core
-from .mesh_arrays import frozen_integers, frozen_reals, numbers, rows
+from .mesh_arrays import frozen_integers, frozen_reals, numbers, plane_points, rows
 from .value import FrozenMapping, Value
 
 if TYPE_CHECKING:
@@ -48,8 +48,8 @@ class Mesh(Value):
         What was meshed. `adapt` meshes it again; a mesh without one (read from a file) gets it
         from its constrained edges.
     kept : (n,) array of int32, optional
-        The number that each vertex had in the mesh it was made from by ``adapt(..., keep=True)``,
-        -1 for those that are new or have moved.
+        The number that each vertex had in the mesh it was made from by ``adapt(..., keep=True)`` or
+        `cleaned`, -1 for those that are new or have moved.
     required_points : (p,) array of int32, optional
         In a mesh without a domain, read from a file: numbers of the vertices that every mesh made
         of it has to have, too.
@@ -73,7 +73,7 @@ class Mesh(Value):
         def put(name: str, value: object) -> None:
             object.__setattr__(self, name, value)
 
-        points = frozen_reals(rows(self.points, "points", 2))
+        points = frozen_reals(plane_points(self.points))
         put("points", points)
         put("triangles", frozen_integers(rows(self.triangles, "triangles", 3), "triangle"))
         put("edges", frozen_integers(rows(self.edges, "edges", 2), "edge"))
@@ -85,9 +85,11 @@ class Mesh(Value):
             kept = numbers(self.kept, "kept", len(points), "points")
             put("kept", frozen_integers(kept, "number kept"))
         for name in ("required_points", "required_edges"):
-            put(name, frozen_integers(np.ravel(getattr(self, name)), name))
-        put("names", FrozenMapping(dict(self.names)))
-        put("region_names", FrozenMapping(dict(self.region_names)))
+            given = getattr(self, name)
+            put(name, frozen_integers(np.ravel(() if given is None else given), name))
+        put("names", FrozenMapping({} if self.names is None else dict(self.names)))
+        names = {} if self.region_names is None else dict(self.region_names)
+        put("region_names", FrozenMapping(names))
 
     def __repr__(self) -> str:
         names = ", ".join([*self.names, *self.region_names])
@@ -134,6 +136,41 @@ class Mesh(Value):
 
         pairs = () if self.domain is None else self.domain.periodic
         return {(p.first, p.second): periodic_vertices(self, p) for p in pairs}
+
+    def cleaned(self, merge: float | None = None) -> Mesh:
+        """The same mesh without points in no triangle, and with each constrained edge listed once.
+
+        Meshes of other programs may have such points, which `validate` finds and metrics refuse;
+        and vertices twice, along seams of blocks that were meshed one by one.
+
+        Parameters
+        ----------
+        merge : float, optional
+            Vertices at most this far apart are made one, the first of them; 0 for those that are
+            equal. If not given, none are.
+
+        Returns
+        -------
+        Mesh
+            Its `kept` are the numbers that the vertices had: ``values[mesh.kept]`` are those of a
+            field on the new mesh.
+
+        Raises
+        ------
+        DomainError
+            An edge has two tags, a triangle would lose its area, or something that is asked for
+            (an edge, a required point) is in no triangle.
+
+        Examples
+        --------
+        >>> points = [(0, 0), (1, 0), (0, 1), (1, 0), (1, 1), (0, 1), (5, 5)]
+        >>> seam = Mesh(points, [(0, 1, 2), (3, 4, 5)])
+        >>> seam.cleaned(merge=0.0).triangles.tolist()
+        [[0, 1, 2], [1, 3, 2]]
+        """
+        from .cleaned import cleaned_mesh
+
+        return cleaned_mesh(self, merge)
 
     def validate(self, *, tolerance: float | None = None) -> Validity:
         """Check every invariant of a mesh by name; see `adaptmesh.validate`."""

@@ -7,13 +7,30 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .domain_input import is_level
+
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 
-def rows(array: ArrayLike, what: str, columns: int) -> NDArray[Any]:
+def plane_points(points: ArrayLike | None) -> NDArray[Any]:
+    """Points (n, 2), also of (n, 3) that lie in a plane z = constant; or a `ValueError`."""
+    out = np.asarray(() if points is None else points)
+    if out.ndim != 2 or out.shape[1] != 3:
+        return rows(out, "points", 2)
+    z = out[:, 2]
+    if len(z) and np.isfinite(out).all() and not is_level(z, out[:, :2]):
+        i = int(np.argmax(np.abs(z - z[0])))
+        raise ValueError(
+            f"point {i} is at height {z[i]:g}, and point 0 at {z[0]:g}: a mesh is plane, give "
+            "points[:, :2]"
+        )
+    return out[:, :2]
+
+
+def rows(array: ArrayLike | None, what: str, columns: int) -> NDArray[Any]:
     """An (n, columns) array, or a `ValueError`."""
-    out = np.asarray(array)
+    out = np.asarray(() if array is None else array)
     if out.size == 0:
         return out.reshape(0, columns)
     if out.ndim != 2 or out.shape[1] != columns:
@@ -21,9 +38,11 @@ def rows(array: ArrayLike, what: str, columns: int) -> NDArray[Any]:
     return out
 
 
-def numbers(array: ArrayLike, what: str, count: int, items: str) -> NDArray[Any]:
+def numbers(array: ArrayLike | None, what: str, count: int, items: str) -> NDArray[Any]:
     """A number for each of some items, 0 if none are given, or a `ValueError`."""
-    out = np.asarray(array) if np.size(array) else np.zeros(count, np.int32)
+    out = np.asarray(() if array is None else array)
+    if not out.size:
+        out = np.zeros(count, np.int32)
     if out.shape != (count,):
         raise ValueError(
             f"{what} must be one number for each of {count} {items}, not of shape {out.shape}"

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from .cleaned import with_edges_once
 from .curves import Curve
 from .domain import Domain
 from .domain_input import labelled
@@ -37,6 +38,7 @@ def domain_of_mesh(
     domain, such as sides that are nearer to each other than that.
     """
     check_is_mesh(mesh)
+    mesh = with_edges_once(mesh)
     if not len(mesh.triangles):
         raise DomainError("the mesh has no triangles, so it covers no domain")
     _refuse_what_is_no_mesh(mesh)
@@ -121,7 +123,8 @@ def _refuse_what_is_no_mesh(mesh: Mesh) -> None:
         i, j = sorted(order[same[0] : same[0] + 2].tolist())
         x, y = mesh.points[i].tolist()
         raise DomainError(
-            f"vertices {i} and {j} of the mesh are the same, ({x:.17g}, {y:.17g}): make them one"
+            f"vertices {i} and {j} of the mesh are the same, ({x:.17g}, {y:.17g}): "
+            "make them one, mesh.cleaned(merge=0.0)"
         )
     _refuse_if_found(
         subject,

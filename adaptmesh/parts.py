@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from .containing import containing_triangles
+from .domain_input import rows_of_each
 from .errors import DomainError
 from .invariants.subject import edge_keys
 from .mesh import Mesh
@@ -59,12 +60,12 @@ def region_points(mesh: Mesh, edges: Ints) -> dict[int, Floats]:
     """For each region but 0 a point in each of its parts."""
     part = parts_between(mesh.triangles, edges, len(mesh.points))
     by_area = np.argsort(mesh.areas)[::-1]
-    out: dict[int, Floats] = {}
-    for number in np.unique(mesh.regions[mesh.regions != 0]).tolist():
-        mine = by_area[mesh.regions[by_area] == number]
-        _, first = np.unique(part[mine], return_index=True)
-        out[number] = mesh.points[mesh.triangles[mine[first]]].mean(axis=1)
-    return out
+    by_area = by_area[mesh.regions[by_area] != 0]
+    kind = mesh.regions[by_area].astype(np.int64) * (int(part.max()) + 1) + part[by_area]
+    _, first = np.unique(kind, return_index=True)  # the largest triangle of each
+    largest = by_area[first]
+    places = mesh.points[mesh.triangles[largest]].mean(axis=1)
+    return {r: places[rows] for r, rows in rows_of_each(mesh.regions[largest]).items()}
 
 
 def parts_between(triangles: Ints, walls: Ints, n_points: int) -> NDArray[np.intp]:

@@ -51,6 +51,11 @@ def repaired_domain_of_segments(
     lines = Lines(find_faces(noded.points[used], renumbered), inside)
     spikes = _spikes(noded, edges, edge_of_piece, lines, log)
     kept = ~(spikes | _in_holes(noded, edges, lines, spikes, log))
+    if np.count_nonzero(kept) < 3:
+        raise DomainError(
+            f"there is nothing to mesh: {np.count_nonzero(kept)} segments are left, which enclose "
+            "nothing" + (f"; the last of what was done: {log[-1]}" if log else "")
+        )
     lone = _lone_points_inside(noded, edges[kept], lines, log)
     log += _lost_names(names, tags, edge_tags[kept], points, segments)
     if log:

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .curves import Curve
+from .domain_input import rows_of_each
 from .errors import DomainError
 from .value import Value
 
@@ -90,8 +91,7 @@ class Run(Value):
         self, values: Callable[[Curve, Floats], Floats], part: Index, u: Floats
     ) -> Floats:
         out = np.empty((len(u), 2))
-        for k in np.unique(part):
-            here = part == k
+        for k, here in rows_of_each(part).items():
             out[here] = values(self.parts[k], u[here] - k)
         return out
 
@@ -110,10 +110,8 @@ def _each(
     values: Callable[[Run, Floats], Floats], runs: Sequence[Run], run: Index, u: Floats
 ) -> Floats:
     out = np.empty((len(u), 2))
-    order = np.argsort(run, kind="stable")
-    first = np.flatnonzero(np.diff(run[order], prepend=-1))
-    for mine in np.split(order, first)[1:]:
-        out[mine] = values(runs[run[mine[0]]], u[mine])
+    for r, mine in rows_of_each(run).items():
+        out[mine] = values(runs[r], u[mine])
     return out
 
 

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 import metrics
 
-from .arrangement import Faces, Repair, Repairs, at, find_faces
+from .arrangement import Repair, Repairs, at, find_faces
 from .arrangement.distance import distance
 from .arrangement.numbering import used_points
 from .decimate import Decimated, decimate, turned
 from .domain import Domain
-from .domain_input import labelled
+from .domain_input import labelled, rows_of_each
 from .errors import DomainError
 from .loops import small_loops
 from .parts import regions_beside
@@ -215,18 +215,14 @@ def _rebuilt(domain: Domain, lines: _Lines, result: Decimated, lone: Ints) -> Do
     region[faces.left], region[faces.right] = left, right
     tags = lines.tags[result.source]
     kept = np.union1d(used, lone)
+    # Face 0, the outside, needs no point.
+    places = {r: faces.places[mine + 1] for r, mine in rows_of_each(region[1:]).items()}
     return Domain(
         domain.points[kept],
         np.searchsorted(kept, result.edges),
-        holes=_places(faces, region, -1),
-        regions={r: _places(faces, region, r) for r in np.unique(domain.seed_regions).tolist()},
+        holes=places.get(-1, np.empty((0, 2))),
+        regions={r: places[r] for r in np.unique(domain.seed_regions).tolist() if r in places},
         names=labelled(tags),
         tags=domain.names,
         region_tags=domain.region_names,
     )
-
-
-def _places(faces: Faces, region: Ints, number: int) -> Floats:
-    """A point in each face of a region; the outside needs none."""
-    mine = np.flatnonzero(region == number)
-    return faces.places[mine[mine > 0]]

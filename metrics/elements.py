@@ -33,7 +33,10 @@ def checked_mesh(points: ArrayLike, triangles: ArrayLike) -> tuple[Floats, Ints]
         raise MetricError(f"triangle {i} = {tuple(t[i].tolist())} is not counter-clockwise")
     alone = np.bincount(t.ravel(), minlength=len(p)) == 0
     if alone.any():
-        raise MetricError(f"{place_of(p, int(alone.argmax()))} is in no triangle; drop such points")
+        raise MetricError(
+            f"{place_of(p, int(alone.argmax()))} is in no triangle: leave it "
+            "out, of a Mesh with mesh.cleaned()"
+        )
     return p, t
 
 

@@ -58,6 +58,9 @@ def implied_metric(points: ArrayLike, triangles: ArrayLike) -> Floats:
     if (count == 0).any():
         i = int(np.argmin(count))
         x, y = p[i].tolist()
-        raise MetricError(f"point {i} ({x!r}, {y!r}) is in no triangle; drop such points")
+        raise MetricError(
+            f"point {i} ({x!r}, {y!r}) is in no triangle: leave it "
+            "out, of a Mesh with mesh.cleaned()"
+        )
     sums = [np.bincount(owners, np.repeat(logs[:, k], 3), len(p)) for k in range(3)]
     return tensor.exp(np.stack(sums, axis=1) / count[:, None])

@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from ..cleaned import edges_once
+from ..domain_input import is_level
 from ..errors import FormatError
 from ..mesh import Mesh
 
@@ -69,20 +71,21 @@ def mesh_of(content: Content) -> Mesh:
     _refuse_duplicates("triangle", triangles)
     edges = np.asarray(content.edges, dtype=np.int64)
     check_vertices("edge", edges, len(points))
-    _refuse_duplicates("edge", edges)
     _edges_are_sides(edges, triangles, len(points))
     _check_numbers("required vertex", content.required_points, len(points))
     _check_numbers("required edge", content.required_edges, len(edges))
+    tags = _tags("edge tag", content.edge_tags)
+    once = edges_once(edges, tags, content.names, FormatError)
     return Mesh(
         points,
         triangles.astype(np.int32),
         regions=_tags("region", content.regions),
-        edges=edges.astype(np.int32),
-        edge_tags=_tags("edge tag", content.edge_tags),
+        edges=edges[once.rows].astype(np.int32),
+        edge_tags=once.tags.astype(np.int32),
         names=_named("edge tag", content.names),
         region_names=_named("region", content.region_names),
         required_points=content.required_points,
-        required_edges=content.required_edges,
+        required_edges=np.unique(once.edge[content.required_edges]),
     )
 
 
@@ -141,11 +144,12 @@ def _planar(points: Array) -> Array:
     points = np.asarray(points, dtype=np.float64)
     check_finite(points)
     if points.shape[1] == 3:
-        off = np.flatnonzero(points[:, 2])
-        if len(off):
+        z = points[:, 2]
+        if len(z) and not is_level(z, points[:, :2]):
+            off = int(np.argmax(np.abs(z - z[0])))
             raise FormatError(
-                f"point {off[0]} is {tuple(points[off[0]].tolist())}: z is not 0. Only plane "
-                "meshes can be read; project or rotate the surface onto z = 0 first"
+                f"point {off} is {tuple(points[off].tolist())}: z is not {z[0]:g}, as that of "
+                "point 0. Only plane meshes can be read; project or rotate the surface onto z = 0"
             )
     out: Array = points[:, :2]
     return out
