@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from reference.transforms import SIMILARITIES
 
 import adaptmesh as am
 from adaptmesh import TransientError, transient_loop
@@ -86,6 +87,51 @@ def test_fields_are_carried_from_interval_to_interval(history):
     assert next(whole) == pytest.approx(next(whole), abs=1e-12)
     assert (one.start, one.end, two.end) == (0, 0.5, 1.0)
     np.testing.assert_allclose(one.times, np.linspace(0, 0.5, 6))
+
+
+@pytest.mark.parametrize("transform", SIMILARITIES[1:], ids=str)
+@pytest.mark.parametrize("keep_bounds", [False, True])
+def test_fields_are_carried_on_slanted_domains(transform, keep_bounds):
+    """What no step changes stays, from mesh to mesh: a linear field, and the integral of noise."""
+    corners = transform([(0, 0), (2, 0.3), (1.8, 1.2), (0.1, 1)])
+    domain = am.Domain.polygon(corners)
+    changes = []
+
+    def place(mesh):
+        return transform.inverse(mesh.points)
+
+    def fields(mesh, t, kept):
+        return {"front": np.tanh(20 * (place(mesh)[:, 0] - 0.5 - t)), **kept}
+
+    def initial(mesh):
+        noise = np.random.default_rng(len(mesh.points)).random(len(mesh.points))
+        return fields(mesh, 0, {"linear": place(mesh) @ [1, 2], "noise": noise})
+
+    def integral(mesh, values):
+        return mesh.areas @ values[mesh.triangles].mean(axis=1) / mesh.areas.sum()
+
+    def advance(mesh, given, t0, t1):
+        kept = {name: given[name] for name in ("linear", "noise")}
+        off = np.abs(kept["linear"] - place(mesh) @ [1, 2]).max()
+        changes.append((off, integral(mesh, kept["noise"])))
+        yield 0.5 * (t0 + t1), fields(mesh, 0.5 * (t0 + t1), kept)
+        yield t1, fields(mesh, t1, kept)
+
+    transient_loop(
+        advance,
+        initial,
+        am.generate(domain, 0.15 * transform.scale),
+        [0, 0.3, 0.6, 0.9],
+        target_vertices=300,
+        sweeps=1,
+        fields=["front"],
+        keep_bounds=keep_bounds,
+    )
+    off, integrals = np.transpose(changes)
+    assert len(off) == 3
+    # Within bounds a linear field may be cut off at its extremes.
+    assert off.max() < (0.1 if keep_bounds else 1e-12 + 1e3 * transform.rounding)
+    np.testing.assert_allclose(integrals, integrals[0], rtol=1e-13 + 10 * transform.rounding)
 
 
 def test_intersection_and_several_fields():
