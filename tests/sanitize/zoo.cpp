@@ -16,6 +16,7 @@
 
 #include "adaptmesh/core/triangulate.hpp"
 #include "tests/sanitize/mesher.hpp"
+#include "tests/sanitize/transfer.hpp"
 
 using namespace adaptmesh;
 
@@ -200,7 +201,58 @@ void run_mesher(const Input& input) {
     }
 }
 
-constexpr void (*PARTS[])(const Input&) = {run_delaunay, run_locate, run_triangulate, run_mesher};
+// The parts of each new triangle add up to it, and each vertex is found in the old mesh.
+void check_overlay(const sanitize::FlatMesh& older, const sanitize::FlatMesh& newer,
+                   const Input& input) {
+    if (!older.is_valid() || !newer.is_valid()) return;
+    NoPoll poll;
+    const metrics::Locator old_mesh = older.locator(), new_mesh = newer.locator();
+    const Overlay overlay(old_mesh, older.areas.data(), new_mesh, newer.areas.data(), poll);
+    double area = 0;
+    for (std::size_t k = 0; k < newer.areas.size(); ++k) {
+        double covered = 0;
+        for (std::size_t i = overlay.first()[k]; i < overlay.first()[k + 1]; ++i) {
+            covered += overlay.areas()[i];
+        }
+        area += newer.areas[k];
+        require(overlay.is_at_border(Index(k)) ||
+                    std::fabs(covered - newer.areas[k]) <= 1e-12 * newer.areas[k],
+                input, "parts of a new triangle add up to it");
+    }
+
+    const std::vector<double> ones(older.points.size(), 1.0);
+    std::vector<double> out(newer.points.size(), 0.0);
+    Moments<Linear> moments(overlay, ones.data(), 1, older.triangles.data(), 0.25, {});
+    moments.add_to(out.data(), newer.triangles.data(), poll);
+    double sum = 0;
+    for (double moment : out) sum += moment;
+    require(std::fabs(sum - area) <= 1e-10 * area, input, "the moments of 1 are the area");
+
+    const ExactLocator locator(old_mesh);
+    for (std::int32_t v : newer.triangles) {
+        const metrics::Location place = locator.locate(newer.points[v]);
+        for (double weight : place.weight) {
+            require(weight >= 0 && weight <= 1, input, "barycentric coordinates are from 0 to 1");
+        }
+    }
+}
+
+void run_transfer(const Input& input) {
+    NoPoll poll;
+    std::vector<Index> duplicate_of;
+    const Triangulation hull = delaunay(input.points, duplicate_of, poll);
+    const Triangulation domain =
+        triangulate(input.points, input.segments, input.options, poll).triangulation;
+    const sanitize::FlatMesh whole(input.points, hull), part(input.points, domain);
+    const sanitize::FlatMesh fine = part.refined();
+    check_overlay(whole, part, input);
+    check_overlay(part, fine, input);
+    check_overlay(fine, part, input);
+    check_overlay(fine, whole, input);
+}
+
+constexpr void (*PARTS[])(const Input&) = {run_delaunay, run_locate, run_triangulate, run_mesher,
+                                           run_transfer};
 
 // ---- The inputs ----
 
