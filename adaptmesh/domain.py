@@ -76,6 +76,7 @@ class Domain(Value):
 
     Examples
     --------
+    >>> from adaptmesh import Domain
     >>> square = Domain([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)],
     ...                 names={"inlet": [3]})
     >>> square.area
@@ -258,6 +259,8 @@ class Domain(Value):
 
         Examples
         --------
+        >>> import numpy as np
+        >>> from adaptmesh import Domain
         >>> from adaptmesh.curves import Circle
         >>> ring = Domain.from_curves([Circle((0, 0), 2), Circle((0, 0), 1)], names={"hole": [1]})
         >>> round(ring.area / np.pi, 12)
@@ -464,6 +467,8 @@ class Domain(Value):
 
         Examples
         --------
+        >>> import numpy as np
+        >>> from adaptmesh import Domain
         >>> from adaptmesh.curves import Circle
         >>> disc = Domain.from_curves([Circle((0, 0), 1)])
         >>> bool(np.hypot(*disc.outline(1e-4).mean(axis=1).T).min() > 1 - 1e-4)

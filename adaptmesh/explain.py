@@ -121,7 +121,7 @@ def explain(
     >>> strip = am.Domain.rectangle(0, 0, 10, 0.5)
     >>> found = am.explain(am.generate(strip, 1.0), 1.0)
     >>> sorted(cause.value for cause in found.edge_causes)
-    ['short constraint']
+    ['crowded constraints', 'short constraint']
     """
     check_measurable(mesh)
     if most < 0:

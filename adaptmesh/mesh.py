@@ -163,6 +163,7 @@ class Mesh(Value):
 
         Examples
         --------
+        >>> from adaptmesh import Mesh
         >>> points = [(0, 0), (1, 0), (0, 1), (1, 0), (1, 1), (0, 1), (5, 5)]
         >>> seam = Mesh(points, [(0, 1, 2), (3, 4, 5)])
         >>> seam.cleaned(merge=0.0).triangles.tolist()

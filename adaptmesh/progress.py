@@ -27,8 +27,10 @@ class TerminalProgress:
 
     Examples
     --------
+    >>> import adaptmesh as am
+    >>> from adaptmesh.progress import TerminalProgress
     >>> with TerminalProgress() as progress:
-    ...     mesh = adaptmesh.generate(domain, 0.001, progress=progress)  # doctest: +SKIP
+    ...     mesh = am.generate(am.Domain.rectangle(0, 0, 2, 1), 0.05, progress=progress)
     """
 
     def __init__(self, stream: TextIO | None = None, delay: float = 1.0) -> None:

@@ -73,6 +73,7 @@ def repair(dirty: Any, tolerance: float | None = None) -> tuple[Domain, Repairs]
 
     Examples
     --------
+    >>> from adaptmesh import repair
     >>> domain, repairs = repair([(0, 0), (2, 2), (2, 0), (0, 2)])
     >>> domain.area
     2.0

@@ -182,7 +182,7 @@ def measure(mesh: Mesh, metric: Any) -> Report:
 
     Examples
     --------
-    >>> from adaptmesh import Mesh
+    >>> from adaptmesh import Mesh, measure
     >>> report = measure(Mesh([[0, 0], [1, 0], [0.5, 0.75**0.5]], [[0, 1, 2]]), 1.0)
     >>> report.unit_fraction, round(report.quality_min, 12)
     (1.0, 1.0)

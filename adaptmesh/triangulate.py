@@ -53,8 +53,9 @@ def delaunay(points: ArrayLike) -> NDArray[np.int32]:
 
     Examples
     --------
+    >>> from adaptmesh import delaunay
     >>> delaunay([[0, 0], [1, 0], [0, 1]])
-    array([[1, 2, 0]], dtype=int32)
+    array([[0, 1, 2]], dtype=int32)
     """
     array = _checked(points)
     try:

@@ -255,7 +255,7 @@ def validate(mesh: Mesh, *, tolerance: float | None = None) -> Validity:
 
     Examples
     --------
-    >>> from adaptmesh import Mesh
+    >>> from adaptmesh import Mesh, validate
     >>> corner = [[0, 0], [1, 0], [0, 1]]
     >>> validate(Mesh(corner, [[0, 1, 2]], edges=[[0, 1], [1, 2], [2, 0]])).ok
     True

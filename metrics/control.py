@@ -29,6 +29,7 @@ class ControlSpace(ABC):
 
     Examples
     --------
+    >>> from metrics import as_control_space, tensor
     >>> field = as_control_space(lambda x: 0.01 + 0.1 * x[:, 0]) & 0.05
     >>> tensor.sizes(field([[0.0, 0.0], [1.0, 0.0]]))
     array([[0.01, 0.01],

@@ -106,6 +106,7 @@ class Expression(ControlSpace):
 
     Examples
     --------
+    >>> from metrics import Expression
     >>> Expression("where(hypot(x, y) < 1, 0.01, 0.1)")([[0.0, 0.0]])
     array([[10000.,     0., 10000.]])
     """

@@ -113,6 +113,7 @@ def sizes(tensors: ArrayLike) -> Floats:
 
     Examples
     --------
+    >>> from metrics.tensor import sizes
     >>> sizes([[100.0, 0.0, 4.0]])
     array([[0.1, 0.5]])
     """
@@ -250,6 +251,7 @@ def simultaneous_reduction(first: ArrayLike, second: ArrayLike) -> tuple[Floats,
 
     Examples
     --------
+    >>> from metrics.tensor import simultaneous_reduction
     >>> values, vectors = simultaneous_reduction([[1.0, 0.0, 4.0]], [[9.0, 0.0, 1.0]])
     >>> values
     array([[0.25, 9.  ]])

@@ -32,8 +32,11 @@ def to_skfem(mesh: Mesh) -> skfem.MeshTri:
 
     Examples
     --------
-    >>> m = to_skfem(mesh)  # doctest: +SKIP
-    >>> inflow = m.boundaries["inlet"]  # doctest: +SKIP
+    >>> import adaptmesh as am
+    >>> from adaptmesh.convert import to_skfem
+    >>> m = to_skfem(am.generate(am.Domain.rectangle(0, 0, 2, 1), 0.5))
+    >>> len(m.boundaries["left"])
+    2
     """
     import skfem
 

@@ -98,8 +98,10 @@ def plot(
 
     Examples
     --------
-    >>> plot(mesh, metric, show="length", path="lengths.png")    # doctest: +SKIP
-    >>> plot(mesh, metric, show="quality", ellipses=True).show() # doctest: +SKIP
+    >>> import adaptmesh as am
+    >>> mesh = am.generate(am.Domain.rectangle(0, 0, 2, 1), 0.2)
+    >>> am.plot(mesh, 0.2, show="length", path="lengths.png")    # doctest: +SKIP
+    >>> am.plot(mesh, 0.2, show="quality", ellipses=True).show() # doctest: +SKIP
     """
     check_measurable(mesh)
     target = None if path is None else check_path(path)

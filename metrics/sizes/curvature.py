@@ -64,7 +64,8 @@ class BoundaryCurvature(ControlSpace):
 
     Examples
     --------
-    >>> from metrics import tensor
+    >>> import numpy as np
+    >>> from metrics import BoundaryCurvature, tensor
     >>> t = np.linspace(0, 2 * np.pi, 201)
     >>> circle = np.stack([2 * np.cos(t), 2 * np.sin(t)], axis=1)
     >>> field = BoundaryCurvature(circle, elements_per_circle=40)

@@ -48,7 +48,7 @@ class Distance(ControlSpace):
 
     Examples
     --------
-    >>> from metrics import tensor
+    >>> from metrics import Distance, tensor
     >>> field = Distance([(0, 0), (1, 0)], h_min=0.1, growth=0.5)
     >>> tensor.sizes(field([[0.5, 0.0], [0.5, 1.0]]))
     array([[0.1, 0.1],

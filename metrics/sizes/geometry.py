@@ -72,6 +72,7 @@ class Geometry:
 
     Examples
     --------
+    >>> from metrics import Geometry
     >>> Geometry([(0, 0), (4, 0)]).nearest([[1.0, 2.0]]).distances
     array([2.])
     """

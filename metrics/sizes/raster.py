@@ -77,7 +77,7 @@ class Raster(ControlSpace):
 
     Examples
     --------
-    >>> from metrics import tensor
+    >>> from metrics import Raster, tensor
     >>> field = Raster([[1.0, 2.0], [3.0, 4.0]], extent=(0, 2, 0, 2), origin="upper")
     >>> tensor.sizes(field([[0.5, 1.5], [1.0, 1.0]]))[:, 0]
     array([1. , 2.5])

@@ -131,6 +131,7 @@ def first_height(
 
     Examples
     --------
+    >>> from metrics import first_height
     >>> f"{first_height(1, 1e6, 1.0):.3g} m for y+ = 1 on a plate of one metre"
     '2.31e-05 m for y+ = 1 on a plate of one metre'
     """
