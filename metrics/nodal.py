@@ -77,7 +77,7 @@ def h_shocks(points: ArrayLike, edges: ArrayLike, metric: Any) -> Floats:
     if not vectors.any(axis=1).all():
         i = int(np.argmin(vectors.any(axis=1)))
         raise MetricError(f"edge {i} = {tuple(ends[i].tolist())} has no length")
-    a, b = _length_at(m[ends[:, 0]], vectors), _length_at(m[ends[:, 1]], vectors)
+    a, b = _core.lengths_in(m[ends[:, 0]], vectors), _core.lengths_in(m[ends[:, 1]], vectors)
     out: Floats = np.exp(np.abs(np.log(a / b)) / _logarithmic_mean(a, b))
     return out
 
@@ -170,7 +170,7 @@ def _by_quadrature(start: Floats, end: Floats, vectors: Floats) -> Floats:
 
 
 def _by_logarithmic_mean(start: Floats, end: Floats, vectors: Floats) -> Floats:
-    return _logarithmic_mean(_length_at(start, vectors), _length_at(end, vectors))
+    return _logarithmic_mean(_core.lengths_in(start, vectors), _core.lengths_in(end, vectors))
 
 
 LENGTH_RULES: dict[str, Callable[[Floats, Floats, Floats], Floats]] = {
@@ -178,16 +178,6 @@ LENGTH_RULES: dict[str, Callable[[Floats, Floats, Floats], Floats]] = {
     "simpson": _core.lengths,
     "logarithmic": _by_logarithmic_mean,
 }
-
-
-def _length_at(tensors: Floats, vectors: Floats) -> Floats:
-    """Lengths of vectors in one metric each, as sums of squares: (m11 x + m12 y)² + det y²."""
-    turned = tensors[:, 0] < tensors[:, 2]
-    largest = tensors[:, [0, 2]].max(axis=1)
-    x, y = np.where(turned, vectors[:, ::-1].T, vectors.T)
-    along = largest * x + tensors[:, 1] * y
-    out: Floats = np.sqrt((along * along + _core.det(tensors) * y * y) / largest)
-    return out
 
 
 def _logarithmic_mean(a: Floats, b: Floats) -> Floats:

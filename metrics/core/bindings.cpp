@@ -139,6 +139,20 @@ std::pair<nb::object, nb::object> reduce(Tensors s, Tensors t) {
     return {values.numpy(), vectors.numpy()};
 }
 
+// Of each vector in its own tensor.
+nb::object lengths_in(Tensors tensors, Points vectors) {
+    require(tensors.shape(0) == vectors.shape(0), "one tensor for each vector is needed");
+    Result<double> out(tensors.shape(0));
+    {
+        nb::gil_scoped_release release;
+        const double *m = tensors.data(), *v = vectors.data();
+        for (std::size_t i = 0; i < out.rows; ++i) {
+            out.data[i] = metrics::exact_length(load(m + 3 * i), v[2 * i], v[2 * i + 1]);
+        }
+    }
+    return out.numpy();
+}
+
 nb::object lengths(Tensors s, Tensors t, Points edges) {
     require(s.shape(0) == t.shape(0) && s.shape(0) == edges.shape(0),
             "one tensor at each end of each edge is needed");
@@ -147,8 +161,8 @@ nb::object lengths(Tensors s, Tensors t, Points edges) {
         nb::gil_scoped_release release;
         const double *start = s.data(), *end = t.data(), *e = edges.data();
         for (std::size_t i = 0; i < out.rows; ++i) {
-            out.data[i] =
-                metrics::length(load(start + 3 * i), load(end + 3 * i), e[2 * i], e[2 * i + 1]);
+            out.data[i] = metrics::exact_length(load(start + 3 * i), load(end + 3 * i), e[2 * i],
+                                                e[2 * i + 1]);
         }
     }
     return out.numpy();
@@ -243,7 +257,9 @@ NB_MODULE(_core, m) {
           "Eigenvalues (n, 2) of second relative to first, ascending; basis (n, 4), row by row.");
     m.def("geometric_mean",
           [](Tensors s, Tensors t) { return combine(s, t, metrics::geometric_mean); });
+    m.def("hypot", [](Tensors s, Tensors t) { return combine(s, t, metrics::hypot); });
     m.def("lengths", &lengths, "at_start"_a, "at_end"_a, "edges"_a);
+    m.def("lengths_in", &lengths_in, "tensors"_a, "vectors"_a);
 
     nb::class_<metrics::Background>(m, "Background")
         .def("__init__", &construct, "points"_a, "logs"_a, "triangles"_a)

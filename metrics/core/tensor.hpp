@@ -85,6 +85,14 @@ inline double length(Tensor t, double dx, double dy) {
     return std::sqrt((along * along + det(t) * dy * dy) / t.a);
 }
 
+// The same to nearly all digits for the entries as they are stored, also where the two products of
+// the first square cancel: what loses the ratio of the sizes in units of rounding above.
+inline double exact_length(Tensor t, double dx, double dy) {
+    if (t.a < t.c) return exact_length({t.c, t.b, t.a}, dy, dx);
+    const double along = product_difference(t.a, dx, -t.b, dy);
+    return std::sqrt((along * along + det(t) * dy * dy) / t.a);
+}
+
 struct Direction {
     double x, y;
 };
@@ -123,9 +131,24 @@ inline Spectrum spectrum(Tensor t) {
     return {det(t) / high, high, axis.x, axis.y};
 }
 
+// A result with these eigenvalues that is still a metric after its entries are rounded. Rounding
+// can take away a determinant that is about DET_RESOLUTION of the product of the diagonal; it is
+// then raised by as little as makes it visible. What no input can have either is left, to be
+// refused.
+inline Tensor held(Tensor t, double low, double high) {
+    if (low > 0x1p-49 * high || low * high < 0.25 * DET_RESOLUTION * (t.a * t.c)) return t;
+    const int tries = 8;
+    double raise = DET_RESOLUTION * std::min(t.a, t.c);
+    for (int k = 0; k < tries && !is_metric(t); ++k, raise *= 2) {
+        t = {t.a + raise, t.b, t.c + raise};
+    }
+    return t;
+}
+
 inline Tensor from_spectrum(Spectrum s) {
-    return {s.high * s.x * s.x + s.low * s.y * s.y, (s.high - s.low) * s.x * s.y,
-            s.high * s.y * s.y + s.low * s.x * s.x};
+    const Tensor t{s.high * s.x * s.x + s.low * s.y * s.y, (s.high - s.low) * s.x * s.y,
+                   s.high * s.y * s.y + s.low * s.x * s.x};
+    return held(t, std::min(s.low, s.high), std::max(s.low, s.high));  // powers below 0 swap them
 }
 
 inline Tensor power(Tensor t, double exponent) {
@@ -189,7 +212,7 @@ inline Tensor exp_tensor(Tensor t) {
     const double stretch = std::exp(dev.r);
     const double low = scale / stretch, high = scale * stretch;
     const double s = 0.5 * (high - low) / dev.r;
-    return {low + s * dev.r_plus_d(), s * dev.b, low + s * dev.r_minus_d()};
+    return held({low + s * dev.r_plus_d(), s * dev.b, low + s * dev.r_minus_d()}, low, high);
 }
 
 // Weighted log-Euclidean mean of two; of more: exp_tensor of the weighted sum of the logs.
@@ -197,11 +220,29 @@ inline Tensor log_mean(Tensor s, Tensor t, double weight_of_t) {
     return exp_tensor((1 - weight_of_t) * log_tensor(s) + weight_of_t * log_tensor(t));
 }
 
-// The geometric mean A#B, half way on the geodesic from A to B; where they commute, (AB)^(1/2).
-inline Tensor geometric_mean(Tensor s, Tensor t) {
-    const double root_s = sqrt_det(s), root_t = sqrt_det(t);
-    const Tensor sum = (1 / root_s) * s + (1 / root_t) * t;
-    return std::sqrt(root_s * root_t / det(sum)) * sum;
+// sqrt(A² + B²) of any symmetric A and B.
+//
+// The positive factor in the polar decomposition of the 4 x 2 matrix of their rows: with its Gram
+// matrix G, of which d² is the determinant, it is (G + d I) / sqrt(trace G + 2 d). By the formula
+// of Cauchy and Binet d² is the sum of the squared minors, none of which is lost to rounding.
+inline Tensor hypot(Tensor s, Tensor t) {
+    const double scale = std::max({std::fabs(s.a), std::fabs(s.b), std::fabs(s.c), std::fabs(t.a),
+                                   std::fabs(t.b), std::fabs(t.c)});
+    if (scale == 0) return {0, 0, 0};
+    s = (1 / scale) * s, t = (1 / scale) * t;
+    const double rows[4][2] = {{s.a, s.b}, {s.b, s.c}, {t.a, t.b}, {t.b, t.c}};
+    double minors = 0;
+    for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < i; ++j) {
+            const double minor = product_difference(rows[i][0], rows[j][1], rows[i][1], rows[j][0]);
+            minors += minor * minor;
+        }
+    }
+    const double d = std::sqrt(minors), off = s.b * s.b + t.b * t.b;
+    const Tensor gram{s.a * s.a + t.a * t.a + off, s.b * (s.a + s.c) + t.b * (t.a + t.c),
+                      s.c * s.c + t.c * t.c + off};
+    const double factor = scale / std::sqrt(gram.a + gram.c + 2 * d);
+    return {factor * (gram.a + d), factor * gram.b, factor * (gram.c + d)};
 }
 
 // Metric length of the edge (dx, dy) from a point with metric s to one with metric t: Simpson's
@@ -215,10 +256,6 @@ inline double length(Tensor s, double root_s, Tensor t, double root_t, double dx
     const double mixed = s.a * t.c + s.c * t.a - 2 * s.b * t.b;
     const double q_mid = (root_t * q_s + root_s * q_t) / std::sqrt(twice + std::max(twice, mixed));
     return (std::sqrt(q_s) + 4 * std::sqrt(q_mid) + std::sqrt(q_t)) * (1.0 / 6);
-}
-
-inline double length(Tensor s, Tensor t, double dx, double dy) {
-    return length(s, sqrt_det(s), t, sqrt_det(t), dx, dy);
 }
 
 // Simultaneous reduction: the basis in which s is the identity and t diagonal.
@@ -262,6 +299,37 @@ struct Reduction {
 
     static Tensor square(Direction v) { return {v.x * v.x, v.x * v.y, v.y * v.y}; }
 };
+
+// The geometric mean A#B, half way on the geodesic from A to B; where they commute, (AB)^(1/2).
+// With the square roots a, b of the determinants it is sqrt(a b / det G) G, where G = A / a + B /
+// b.
+//
+// det G is 2 + (a / b) trace(A^-1 B), with the trace from the reduction: as the difference of the
+// products of the entries of G it would be lost where both ellipses are thin and alike.
+struct GeometricMean {
+    double of_s, of_t;  // what each counts for
+
+    GeometricMean(Tensor s, Tensor t) {
+        const double root_s = sqrt_det(s), root_t = sqrt_det(t);
+        const Reduction r(s, t);
+        const double det_sum = 2 + (root_s / root_t) * (r.low + r.high);
+        const double factor = std::sqrt(root_s * root_t / det_sum);
+        of_s = factor / root_s, of_t = factor / root_t;
+    }
+};
+
+inline Tensor geometric_mean(Tensor s, Tensor t) {
+    const GeometricMean mean(s, t);
+    return mean.of_s * s + mean.of_t * t;
+}
+
+// As the length of an edge above, to nearly all digits for the entries as they are stored.
+inline double exact_length(Tensor s, Tensor t, double dx, double dy) {
+    const GeometricMean mean(s, t);
+    const double at_s = exact_length(s, dx, dy), at_t = exact_length(t, dx, dy);
+    const double middle = std::sqrt(mean.of_s * at_s * at_s + mean.of_t * at_t * at_t);
+    return (at_s + 4 * middle + at_t) * (1.0 / 6);
+}
 
 // Equal but for rounding, which the reduction of a thin ellipse would magnify.
 inline bool nearly_equal(Tensor s, Tensor t) {

@@ -53,3 +53,24 @@ def spectral(function, m):
     slope = (high - low) / (2 * r) if r else Decimal(0)
     middle = (high + low) / 2
     return [middle + slope * d, slope * b, middle - slope * d]
+
+
+def geometric_mean(s, t):
+    root_s, root_t = det(s).sqrt(), det(t).sqrt()
+    total = [x / root_s + y / root_t for x, y in zip(s, t, strict=True)]
+    factor = (root_s * root_t / det(total)).sqrt()
+    return [factor * x for x in total]
+
+
+def hypot(s, t):
+    """The root of the sum of the squares, by its eigenvalues."""
+    squares = [[a * a + b * b, b * (a + c), b * b + c * c] for a, b, c in (s, t)]
+    return spectral(_root, [x + y for x, y in zip(*squares, strict=True)])
+
+
+def _root(x):
+    return max(x, Decimal(0)).sqrt()
+
+
+def length(m, x, y):
+    return (m[0] * x * x + 2 * m[1] * x * y + m[2] * y * y).sqrt()
