@@ -7,14 +7,20 @@
 //        / \ / \ / \ / \     lie on too few lines, a third ring is added, a
 //       o---o---v---o---o    fourth, ...
 //
-// The fit is made in the frame in which the scatter of the neighbours is round, so that thin
+// The fit is made in a frame in which the scatter of the neighbours is round, so that thin
 // triangles fit as well as others; and by Householder reflections, whose triangle tells how well
 // the neighbours determine the coefficients.
+//
+// A round frame is one up to a rotation, and which one it is depends on the axes. So nothing is
+// decided by single columns: rotations of the frame mix s with t, and s²/2, s t / sqrt 2, t²/2 with
+// each other, by orthogonal matrices, which leave the Frobenius norms of the two blocks of the
+// triangle and of their inverses as they are.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "metrics/core/adjacency.hpp"
@@ -87,10 +93,14 @@ class QuadraticFit {
             if (rings == 2 || near < NEAR) near = stencil_.size();
             const double determined = stencil_.size() < COEFFICIENTS ? 0 : fit(vertex, out);
             if (determined > WELL) return true;
-            if (!grown) return determined > BARELY;
+            if (!grown) {
+                if (determined > BARELY && determined < HARDLY)
+                    fit_least_curved(vertex, HARDLY, out);
+                return determined > BARELY;
+            }
             if (stencil_.size() > LARGEST) {
                 stencil_.resize(near);
-                return fit_least_curved(vertex, out);
+                return fit_least_curved(vertex, WELL, out);
             }
         }
     }
@@ -100,8 +110,10 @@ class QuadraticFit {
     static constexpr std::size_t LARGEST = 60;         // stencils are not given more rings
     static constexpr std::size_t NEAR = 8;             // what makes two rings enough, if need be
     static constexpr std::ptrdiff_t LARGEST_FAN = 64;  // of many neighbours every k-th is enough
-    // The smallest diagonal entry of the triangle of columns of length 1: enough, and too little.
-    static constexpr double WELL = 0.08, BARELY = 1e-6;
+    // How well the coefficients are determined, from 0 to about 0.5: enough; so little that
+    // rounding of coordinates would show, by the square of it, in curvatures that are then left
+    // out; and too little.
+    static constexpr double WELL = 0.03, HARDLY = 1e-3, BARELY = 1e-6;
 
     // Appends the neighbours of the vertices from `ring` on; false if there are no new ones.
     bool add_ring(Index vertex, std::size_t& ring) {
@@ -119,14 +131,13 @@ class QuadraticFit {
         return stencil_.size() > end;
     }
 
-    // Fits to the stencil; returns how well it is determined, from 0 to 1.
+    // Fits to the stencil; returns how well it is determined.
     double fit(Index vertex, Derivatives& out) {
         if (!fill_rows(vertex)) return 0;
-        double determined = 1;
-        for (std::size_t j = 0; j < COEFFICIENTS; ++j) {
-            if (length_[j] == 0) return 0;  // as s t for points on the axes only
-            determined = std::min(determined, reflect(j) / length_[j]);
-        }
+        for (std::size_t j = 0; j < COEFFICIENTS; ++j) reflect(j);
+        const double determined =
+            std::min(1 / (std::sqrt(double(stencil_.size())) * inverse_norm(0)),
+                     1 / (spread_ * inverse_norm(LINEAR)));
         if (!(determined > BARELY)) return 0;
         double c[COEFFICIENTS];
         for (std::size_t j = COEFFICIENTS; j-- > 0;) solve_for(j, c);
@@ -134,34 +145,42 @@ class QuadraticFit {
         return determined;
     }
 
+    // The Frobenius norm of the inverse of the 3 x 3 block of the triangle from row and column j
+    // on, with the middle column of the quadratic terms weighted.
+    double inverse_norm(std::size_t j) {
+        const double w = j == LINEAR ? WEIGHT[1] : 1;
+        const double a = entry(j, j), b = w * entry(j, j + 1), c = entry(j, j + 2);
+        const double d = w * entry(j + 1, j + 1), e = entry(j + 1, j + 2), f = entry(j + 2, j + 2);
+        if (a == 0 || d == 0 || f == 0) return std::numeric_limits<double>::infinity();
+        const double p = b / (a * d), q = e / (d * f), r = (b * e - c * d) / (a * d * f);
+        return std::sqrt(1 / (a * a) + 1 / (d * d) + 1 / (f * f) + p * p + q * q + r * r);
+    }
+
     // Of all quadratics that fit best, the one with the least curvature: where the mesh is one
     // triangle thick, far and wide, nothing tells how the function bends across.
     //
-    // The norm of the curvature is that of x = (c3, sqrt2 c4, c5) in the round frame. The triangle
-    // of the last three columns, A x = b, is solved without the directions in which A is small.
-    bool fit_least_curved(Index vertex, Derivatives& out) {
+    // The norm of the curvature is that of x = (c3, sqrt2 c4, c5), the Frobenius norm of the
+    // Hessian in the round frame. The triangle of the last three columns, A x = b, is solved
+    // without the directions in which A is less than `share` of what it could be.
+    bool fit_least_curved(Index vertex, double share, Derivatives& out) {
         if (!fill_rows(vertex)) return false;
-        for (std::size_t j = 0; j < LINEAR; ++j) {
-            if (!(reflect(j) > BARELY * length_[j])) return false;
-        }
+        for (std::size_t j = 0; j < LINEAR; ++j) reflect(j);
         const std::size_t m = stencil_.size();
-        double largest = 0;
+        if (!(1 / inverse_norm(0) > BARELY * std::sqrt(double(m)))) return false;
         Symmetric3 square{};
         double right[3] = {};
-        const double weight[3] = {1, std::sqrt(0.5), 1};
         for (std::size_t a = 0; a < 3; ++a) {
-            largest = std::max(largest, weight[a] * length_[LINEAR + a]);
             for (std::size_t i = LINEAR; i < m; ++i) {
-                const double left = weight[a] * entry(i, LINEAR + a);
+                const double left = WEIGHT[a] * entry(i, LINEAR + a);
                 right[a] += left * entry(i, COEFFICIENTS);
                 for (std::size_t b = 0; b <= a; ++b) {
-                    square.at(a, b) += left * weight[b] * entry(i, LINEAR + b);
+                    square.at(a, b) += left * WEIGHT[b] * entry(i, LINEAR + b);
                 }
             }
         }
         double x[3];
-        square.solve_truncated(right, WELL * WELL * largest * largest, x);
-        double c[COEFFICIENTS] = {0, 0, 0, x[0], weight[1] * x[1], x[2]};
+        square.solve_truncated(right, share * share * spread_ * spread_, x);
+        double c[COEFFICIENTS] = {0, 0, 0, x[0], WEIGHT[1] * x[1], x[2]};
         for (std::size_t j = LINEAR; j-- > 0;) solve_for(j, c);
         put_derivatives(c, out);
         return true;
@@ -178,7 +197,9 @@ class QuadraticFit {
             xx += dx * dx, xy += dx * dy, yy += dy * dy;
         }
         l11_ = std::sqrt(xx / double(m)), l21_ = xy / double(m) / l11_;
-        l22_ = std::sqrt(std::max(yy / double(m) - l21_ * l21_, 0.0));
+        double rest = yy / double(m) - l21_ * l21_;
+        if (rest < 1e-8 * yy / double(m)) rest = scatter_across(x0, y0);
+        l22_ = std::sqrt(rest);
         if (!(l11_ > 0 && l22_ > 0)) return false;
 
         rows_.resize(m * COLUMNS);
@@ -191,12 +212,25 @@ class QuadraticFit {
             row[5] = t * t / 2, row[6] = values_[w] - u0, row[7] = 0;
             row += COLUMNS;
         }
-        std::fill(length_, length_ + COLUMNS, 0.0);
+        double squares = 0;
         for (std::size_t i = 0; i < m; ++i) {
-            for (std::size_t j = 0; j < COLUMNS; ++j) length_[j] += entry(i, j) * entry(i, j);
+            const double half = entry(i, 3) + entry(i, 5);  // of the squared distance in the frame
+            squares += half * half;
         }
-        for (double& length : length_) length = std::sqrt(length);
+        spread_ = std::sqrt(squares);
         return true;
+    }
+
+    // The mean square of y - (l21 / l11) x, as what is left of y once it is taken point by point:
+    // as the difference of two means it is lost where the stencil is thin at an angle.
+    double scatter_across(double x0, double y0) const {
+        double sum = 0;
+        for (const Index w : stencil_) {
+            const double dx = points_[2 * w] - x0, dy = points_[2 * w + 1] - y0;
+            const double across = product_difference(dy, l11_, l21_, dx) / l11_;
+            sum += across * across;
+        }
+        return sum / double(stencil_.size());
     }
 
     // Coefficient j from row j of the triangle, where those after it are known.
@@ -248,13 +282,16 @@ class QuadraticFit {
     // After the coefficients the right-hand side, and one that makes their number even.
     static constexpr std::size_t COLUMNS = COEFFICIENTS + 2;
 
+    // Of the quadratic terms, with which their norm does not depend on the frame.
+    static constexpr double WEIGHT[3] = {1, 0.70710678118654752, 1};
+
     const double* points_;
     const double* values_;
     const Adjacency& mesh_;
     std::vector<Index> seen_;  // the last vertex whose stencil had this one
     std::vector<Index> stencil_;
     std::vector<double> rows_;
-    double length_[COLUMNS];  // of the columns
+    double spread_;           // Frobenius norm of the weighted quadratic terms
     double l11_, l21_, l22_;  // of the frame
 };
 
