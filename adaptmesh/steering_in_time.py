@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from metrics import Background, Curvature, Limits, absolute, combined
 from metrics.nodal import predicted_vertices
 from metrics.normalise import check_combination, check_norm
-from metrics.recovery import check_method
+from metrics.recovery import check_method, largest_magnitude
 from metrics.solution import optimal_tensors
 
 from .expected import expect_number
@@ -101,7 +101,7 @@ class SteeringInTime:
         points = np.concatenate([m.points for m in meshes])
         triangles = np.concatenate([m.triangles + k for m, k in zip(meshes, n_of, strict=False)])
         stacked = [np.concatenate([h[name] for h in hessians]) for name in hessians[0]]
-        bent = [absolute(h, FLATNESS * np.abs(h).max()) for h in stacked if h.any()]
+        bent = [absolute(h, FLATNESS * largest_magnitude(h)) for h in stacked if h.any()]
         total = self.target_vertices * len(meshes)
         for _ in range(TRIALS):
             whole = optimal_tensors(

@@ -97,9 +97,11 @@ def for_the_goal(n):
     def solve(mesh):
         u, z, _ = solve_both(mesh)
         gradient = metrics.gradients(mesh.points, mesh.triangles, u)
-        flux = np.stack([u, np.zeros_like(u)], axis=1) - eps * gradient
+        carried = np.stack([u, np.zeros_like(u)], axis=1)
+        fluxes, adjoints = np.stack([carried, -eps * gradient], axis=1), np.stack([z, z], axis=1)
+        options = {"target_vertices": n, "h_max": 0.3, "recovery": "green"}
         metric = metrics.metric_from_adjoint(
-            mesh.points, mesh.triangles, flux, z, target_vertices=n, h_max=0.3, recovery="green"
+            mesh.points, mesh.triangles, fluxes, adjoints, **options
         )
         return am.Solution({"u": u, "z": z}, metric=metric)
 

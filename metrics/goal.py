@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import tensor
 from .arrays import Floats, as_numbers
 from .background import Background
 from .elements import checked_mesh, place_of
 from .errors import MetricError
 from .normalise import Limits
-from .recovery import absolute, gradients, hessians
+from .recovery import absolute, gradients, hessians, largest_magnitude
 from .solution import metric_from_hessians
 
 __all__ = ["metric_from_adjoint"]
@@ -36,23 +35,26 @@ def metric_from_adjoint(
 ) -> Background:
     """The metric of least error in a goal J(u), for what there is to spend.
 
-    For a conservation law div F(u) = f and the adjoint z of the goal, the error of J is bounded by
-    the interpolation error of the fluxes, weighted by the gradient of the adjoint: by the integral
-    of the sum over i of abs(dz/dx_i) abs(F_i - its interpolant).
+    For a conservation law div F(u) = f and the adjoint z of the goal, the error of J comes from the
+    interpolation error of the fluxes, along the gradient of the adjoint: it is bounded by the
+    integral of abs(grad z . (F - its interpolant)).
 
-    So the weighted sum of the absolute Hessians of all fluxes takes the place of the Hessian of the
-    solution, in the L^1 norm.
+    Around a point, grad z . F has the Hessian G = sum over i of dz/dx_i H(F_i), whatever axes the
+    plane is given; and abs(G) takes the place of the Hessian of the solution, in the L^1 norm. Of
+    several equations the absolute values are added.
 
     Parameters
     ----------
     points : (n, 2) array_like
     triangles : (m, 3) array_like of int
         Counter-clockwise.
-    fluxes : (n, 2) or (n, k, 2) array_like
+    fluxes : (n, 2), (n, k, 2) or (n, k, c, 2) array_like
         At the points, the flux of each of k equations in x and y: for convection and diffusion,
         ``-div(a grad u) + b . grad u``, it is ``b u - a grad u``. Gradients in it are recovered,
-        e.g. by `metrics.gradients`.
-    adjoint : (n,) or (n, k) array_like
+        e.g. by `metrics.gradients`. Parts whose errors must not be reckoned to cancel, such as
+        these two, are given as two equations with the same adjoint. An equation of c components,
+        such as the two of momentum, is one, so that it does not matter along which axes they are.
+    adjoint : (n,), (n, k) or (n, k, c) array_like
         The adjoint solution z of each equation at the points; its scale does not matter.
     target_vertices, complexity, h_min, h_max, max_anisotropy, gradation, law, recovery
         As for `metric_from_solution`.
@@ -71,6 +73,9 @@ def metric_from_adjoint(
 
     Notes
     -----
+    The paper adds abs(dz/dx_i) abs(H(F_i)) over both axes, which depends on them. Along the gradient
+    of the adjoint and across it there is one term only, and that is abs(G).
+
     Where the goal does not depend on the mesh, the weighted Hessian is nearly zero and sizes are
     bounded by `h_max` and `gradation` only: a finite `h_max` is advised.
 
@@ -83,10 +88,13 @@ def metric_from_adjoint(
     f, z = _checked_pair(p, fluxes, adjoint)
     weighted = np.zeros((len(p), 3))
     for k in range(z.shape[1]):
-        weights = np.abs(gradients(p, t, z[:, k], _gradient_method(recovery)))
-        for i in range(2):
-            weighted += weights[:, [i]] * absolute(hessians(p, t, f[:, k, i], recovery))
-    largest = float(np.abs(tensor.unpack(weighted)).max())
+        along = np.zeros_like(weighted)
+        for c in range(z.shape[2]):
+            slopes = gradients(p, t, z[:, k, c], _gradient_method(recovery))
+            for i in range(2):
+                along += slopes[:, [i]] * hessians(p, t, f[:, k, c, i], recovery)
+        weighted += absolute(along)
+    largest = largest_magnitude(weighted)
     if not largest > 0:
         raise MetricError(
             "the goal does not ask for any size: the adjoint is constant, or the fluxes are linear "
@@ -109,26 +117,24 @@ def _gradient_method(recovery: str) -> str:
 
 
 def _checked_pair(points: Floats, fluxes: ArrayLike, adjoint: ArrayLike) -> tuple[Floats, Floats]:
-    """Fluxes (n, k, 2) and adjoints (n, k) that belong together."""
+    """Fluxes (n, k, c, 2) and adjoints (n, k, c) that belong together."""
     n = len(points)
     f = np.asarray(as_numbers(fluxes, "fluxes"), np.float64)
     z = np.asarray(as_numbers(adjoint, "the adjoint"), np.float64)
-    if f.ndim == 2:
-        f = f[:, None, :]
-    if z.ndim == 1:
-        z = z[:, None]
-    if f.ndim != 3 or f.shape[0] != n or f.shape[2] != 2:
+    if f.ndim not in (2, 3, 4) or f.shape[0] != n or f.shape[-1] != 2 or f.size == 0:
         raise MetricError(
-            f"fluxes must have the shape ({n}, 2) or ({n}, k, 2), not {np.shape(fluxes)}"
+            f"fluxes must have the shape ({n}, 2), ({n}, k, 2) or ({n}, k, c, 2), not "
+            f"{np.shape(fluxes)}"
         )
-    if z.shape != f.shape[:2]:
+    if z.shape != f.shape[:-1] and not (f.ndim == 2 and z.shape == (n, 1)):
         raise MetricError(
-            f"the adjoint must have the shape ({n}, {f.shape[1]}), one for each flux, not "
+            f"the adjoint must have the shape {f.shape[:-1]}, one for each flux, not "
             f"{np.shape(adjoint)}"
         )
-    for array, what in ((f.reshape(n, -1), "flux"), (z, "adjoint")):
+    for array, what in ((f.reshape(n, -1), "flux"), (z.reshape(n, -1), "adjoint")):
         bad = ~np.isfinite(array).all(axis=1)
         if bad.any():
             i = int(bad.argmax())
             raise MetricError(f"the {what} at {place_of(points, i)} is not finite")
-    return f, z
+    k, c = (*f.shape[1:-1], 1, 1)[:2]
+    return f.reshape(n, k, c, 2), z.reshape(n, k, c)

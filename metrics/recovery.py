@@ -134,6 +134,13 @@ def absolute(hessians: ArrayLike, floor: ArrayLike = 0.0) -> Floats:
     return _core.absolute(tensors, floors)
 
 
+def largest_magnitude(hessians: Floats) -> float:
+    """The largest magnitude of an eigenvalue of packed symmetric tensors (n, 3) of any signs."""
+    m11, m12, m22 = hessians.T
+    out = np.abs(0.5 * (m11 + m22)) + np.hypot(0.5 * (m11 - m22), m12)
+    return float(out.max(initial=0.0))
+
+
 def check_method(method: str) -> None:
     """Refuse a method of recovery that there is not."""
     if method not in METHODS:

@@ -41,21 +41,39 @@ def test_a_linear_adjoint_weighs_all_points_alike():
     np.testing.assert_allclose(sizes(got.tensors), sizes(plain.tensors), rtol=1e-3)
 
 
-def test_the_sum_is_that_of_the_paper():
+def test_it_is_the_optimal_metric_of_the_flux_along_the_gradient_of_the_adjoint():
     flux = np.stack([carried((1, -2), U), carried((0.5, 1), X**2 * Y)], axis=1)
     z = np.stack([np.sin(2 * X), X * Y], axis=1)
     expected = np.zeros((len(POINTS), 3))
     for k in range(2):
-        g = np.abs(gradients(POINTS, TRIANGLES, z[:, k]))
-        for i in range(2):
-            h = absolute(hessians(POINTS, TRIANGLES, flux[:, k, i]))
-            expected += g[:, [i]] * h
+        g = gradients(POINTS, TRIANGLES, z[:, k])
+        h = [hessians(POINTS, TRIANGLES, flux[:, k, i]) for i in range(2)]
+        expected += absolute(g[:, [0]] * h[0] + g[:, [1]] * h[1])
     got = metric_from_adjoint(POINTS, TRIANGLES, flux, z, complexity=800, gradation=None).tensors
     # In proportion to det^(-1/4) H, the optimal metric of the L1 norm.
     det = expected[:, 0] * expected[:, 2] - expected[:, 1] ** 2
     well = det > 1e-6 * np.abs(expected).max() ** 2
     ratio = got[well] / (det[well] ** -0.25)[:, None] / expected[well]
     np.testing.assert_allclose(ratio, ratio[0, 0], rtol=1e-3)
+
+
+def test_components_of_one_equation_add_up_before_the_absolute_value():
+    flux = np.stack([carried((1, -2), U), carried((0.5, 1), X**2 * Y)], axis=1)
+    z = np.stack([np.sin(2 * X), X * Y], axis=1)
+    one = metric_from_adjoint(
+        POINTS, TRIANGLES, flux[:, None], z[:, None], complexity=800, gradation=None
+    )
+    # The same equations, rotated among themselves and their adjoints along.
+    turn = np.array([[0.6, -0.8], [0.8, 0.6]])
+    other = metric_from_adjoint(
+        POINTS,
+        TRIANGLES,
+        np.einsum("kl,nli->nki", turn, flux)[:, None],
+        (z @ turn.T)[:, None],
+        complexity=800,
+        gradation=None,
+    )
+    np.testing.assert_allclose(one.tensors, other.tensors, rtol=1e-6, atol=1e-6)
 
 
 def test_vertices_go_where_the_adjoint_changes():
