@@ -73,8 +73,8 @@ def metric_from_adjoint(
 
     Notes
     -----
-    The paper adds abs(dz/dx_i) abs(H(F_i)) over both axes, which depends on them. Along the gradient
-    of the adjoint and across it there is one term only, and that is abs(G).
+    The paper adds abs(dz/dx_i) abs(H(F_i)) over both axes, which depends on them. Along the
+    gradient of the adjoint and across it there is one term only, and that is abs(G).
 
     Where the goal does not depend on the mesh, the weighted Hessian is nearly zero and sizes are
     bounded by `h_max` and `gradation` only: a finite `h_max` is advised.

@@ -23,8 +23,8 @@ Numbers = NDArray[np.intp]
 
 _SPARSE = 16  # with so many times more numbers than corners, most have no triangle
 
-# When sqrt(det M) varies by more than the exponential of this on a triangle, anything may be between
-# samples.
+# When sqrt(det M) varies by more than the exponential of this on a triangle, anything may be
+# between samples.
 _SMOOTH = 3.0
 _GAP = 0.2  # from a point of a triangle to the nearest sample, relative to its width
 
