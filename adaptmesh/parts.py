@@ -24,13 +24,22 @@ OUTSIDE = -(2**40)  # a number that no region has
 def seeds_in(mesh: Mesh) -> tuple[Floats, dict[int, Floats]]:
     """Points (k, 2) in holes, and by number in the parts of each region but 0.
 
-    From these and the constrained edges alone follows what the mesh covers.
+    From these and the constrained edges alone follows what the mesh covers; where part of its
+    border is not constrained, as in files of some programs, it does not, and there are none.
     """
-    if not len(mesh.edges):
+    if not _border_is_constrained(mesh):
         return np.empty((0, 2)), {}
     used, renumbered = np.unique(mesh.edges, return_inverse=True)
     segments = renumbered.reshape(-1, 2).astype(np.int32)
     return hole_points(mesh, mesh.points[used], segments), region_points(mesh, mesh.edges)
+
+
+def _border_is_constrained(mesh: Mesh) -> bool:
+    n = len(mesh.points)
+    halves, _ = _half_edges(mesh.triangles)
+    keys, count = np.unique(edge_keys(halves[:, 0], halves[:, 1], n), return_counts=True)
+    constrained = edge_keys(mesh.edges[:, 0], mesh.edges[:, 1], n)
+    return bool(np.isin(keys[count == 1], constrained).all())
 
 
 def hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:

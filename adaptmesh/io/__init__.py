@@ -33,6 +33,7 @@ from .files import read_bytes, replace_files
 from .formats import FORMATS, Format, format_of
 from .located import located, only_our_errors
 from .outgoing import outgoing, solution_values
+from .second_order import with_corners_only
 
 __all__ = ["FORMATS", "Format", "read", "read_fields", "read_sol", "write", "write_sol"]
 
@@ -67,7 +68,7 @@ def read(path: PathLike) -> Mesh:
     """
     path = Path(path)
     with only_our_errors(path):
-        content = format_of(path).load(path, False)
+        content = with_corners_only(format_of(path).load(path, False))
         with located(path):
             return mesh_of(content)
 
@@ -95,7 +96,7 @@ def read_fields(path: PathLike) -> dict[str, Array]:
     """
     path = Path(path)
     with only_our_errors(path):
-        content = format_of(path).load(path, True)
+        content = with_corners_only(format_of(path).load(path, True))
         with located(path):
             return fields_of(content, mesh_of(content))
 

@@ -26,7 +26,8 @@ class Content:
 
     Points are (n, 2) or (n, 3); fields are at the points or at the triangles; the metric is
     packed (m11, m12, m22). What is required are vertex numbers and rows of the edges. Seeds are
-    points in holes (k, 2), and by number in the parts of regions.
+    points in holes (k, 2), and by number in the parts of regions. `others` are vertex numbers of
+    nodes of cells of higher order that are no corners, see `adaptmesh.io.second_order`.
     """
 
     points: Array
@@ -43,6 +44,7 @@ class Content:
     required_edges: Array = field(default_factory=lambda: np.empty(0, np.int64))
     hole_seeds: Array = field(default_factory=lambda: np.empty((0, 2)))
     region_seeds: Mapping[int, Array] = field(default_factory=dict)
+    others: Array = field(default_factory=lambda: np.empty(0, np.int64))
 
 
 def refuse_cells(counts: Mapping[str, int]) -> None:

@@ -68,7 +68,7 @@ def _save_vtk(path: Path, content: Content, **options: bool) -> dict[Path, bytes
 
 
 def _load_gmsh(path: Path, fields: bool) -> Content:
-    from .gmsh import decode
+    from .msh import decode
 
     data = read_bytes(path)
     with located(path):

@@ -1,4 +1,4 @@
-"""Gmsh meshes, `.msh`: what both versions share, and which version it is.
+"""Gmsh meshes, `.msh`: what its versions share, and which version it is; 2.2 and 4.1 are written.
 
 Names are physical groups: edge tags physical curves, regions physical surfaces; tag 0 is in no
 group. A field is a `$NodeData` or `$ElementData` view; one with 2 columns is written with a third
@@ -27,7 +27,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -36,24 +36,36 @@ import numpy as np
 from ..errors import FormatError
 from .bounded import read_json
 from .content import Array, Content, refuse_cells
-from .files import text_of, without_mark
+from .files import text_of
+from .gmsh_groups import in_several, name_several
 from .located import located
-from .records import BinaryCursor, TextCursor, table
-from .spatial import plane_fields, spatial, spatial_tensor, take_metric
+from .records import BinaryCursor, Cursor, TextCursor, table
+from .spatial import plane_fields, shaped, shapes, spatial, spatial_tensor, take_metric
 
-NODES_OF_TYPE = {1: 2, 2: 3, 15: 1}
-"""Vertices of the element types that are read: edges, triangles, lone vertices."""
+NODES_OF_TYPE = {
+    15: 1, 1: 2, 8: 3, 26: 4, 27: 5, 28: 6,
+    2: 3, 9: 6, 20: 9, 21: 10, 22: 12, 23: 15, 24: 15, 25: 21,
+}  # fmt: skip
+"""Nodes of the element types that are read: lone vertices, edges and triangles of any order."""
+DIMENSION_OF_TYPE = {
+    kind: 0 if kind == 15 else 1 if kind in (1, 8, 26, 27, 28) else 2 for kind in NODES_OF_TYPE
+}
 _KINDS = {
     3: "quadrilaterals", 4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids",
-    8: "edges of second order", 9: "triangles of second order", 10: "quadrilaterals with 9 nodes",
+    10: "quadrilaterals with 9 nodes",
     11: "tetrahedra of second order", 16: "quadrilaterals with 8 nodes",
 }  # fmt: skip
+_VERSIONS_4_0 = ("4", "4.0")
+_VERSIONS = ("2", "2.0", "2.1", "2.2", "3", "3.0", "3.1", *_VERSIONS_4_0, "4.1")
 _LONGEST_NAME = 127
 
 
 @dataclass
 class Elements:
-    """Elements of one type: tag, vertices by node tag, and physical group of each."""
+    """Elements of one type: tag, vertices by node tag, and physical group of each.
+
+    Below 0 stand several groups, see `Sections.shared`.
+    """
 
     tags: Array
     nodes: Array
@@ -72,6 +84,18 @@ class Sections:
     node_data: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     element_data: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     ours: dict[str, Any] = field(default_factory=dict)
+    several: dict[tuple[int, tuple[int, ...]], int] = field(default_factory=dict)
+
+    def group_of(self, dim: int, entity: int) -> int:
+        """The physical group of an entity, see `shared`."""
+        return self.shared(dim, self.groups.get((dim, entity), []))
+
+    def shared(self, dim: int, groups: Iterable[int]) -> int:
+        """One number for groups: 0 for none, that of a single one, else one below 0."""
+        key = tuple(sorted(set(groups)))
+        if len(key) < 2:
+            return key[0] if key else 0
+        return self.several.setdefault((dim, key), -1 - len(self.several))
 
     def add(self, kind: int, parts: list[Elements]) -> None:
         """Bring the blocks of one type of element together."""
@@ -97,16 +121,16 @@ def refuse_element_types(counts: dict[int, int]) -> None:
 
 
 def decode(data: bytes) -> Content:
-    """What a `.msh` file says, of version 2.2 or 4.1, text or binary."""
-    from . import gmsh22, gmsh41
-
-    sections = list(_sections(without_mark(data)))
-    if not sections or sections[0][0] != "MeshFormat":
+    """What a `.msh` file of Gmsh says, of any version, text or binary."""
+    sections = list(_sections(data))
+    version, order = "1", None
+    if sections and sections[0][0] == "MeshFormat":
+        version, order = _version(sections.pop(0)[1])
+    elif not sections or sections[0][0] != "NOD":
         raise FormatError("does not start with $MeshFormat: it is damaged or not a Gmsh file")
-    version, order = _version(sections[0][1])
-    readers = gmsh41.READERS if version.startswith("4") else gmsh22.READERS
+    readers = _readers(version)
     out = Sections()
-    for name, body in sections[1:]:
+    for name, body in sections:
         with located(f"${name}"):
             if name in readers:
                 cursor = _cursor(body, order)
@@ -130,11 +154,22 @@ def _sections(data: bytes) -> Iterator[tuple[str, bytes]]:
         if not opening:
             raise FormatError(f"a section $Name was expected, found {data[at : at + 24]!r}")
         name = opening.group(1)
-        end = data.find(b"$End" + name, opening.end())
+        closing = (b"$END" if name in (b"NOD", b"ELM") else b"$End") + name
+        end = data.find(closing, opening.end())
         if end < 0:
-            raise FormatError(f"${name.decode()} has no $End{name.decode()}: the file is cut short")
+            raise FormatError(f"${name.decode()} has no {closing.decode()}: the file is cut short")
         yield name.decode(), data[opening.end() : end]
-        at = end + len(b"$End" + name)
+        at = end + len(closing)
+
+
+def _readers(version: str) -> Mapping[str, Callable[[Cursor, Sections], None]]:
+    """The readers of the sections of a version, by name."""
+    from . import gmsh22, gmsh40, gmsh41, gmsh_old
+
+    by_version = {"1": gmsh_old.READERS_1, "3": gmsh_old.READERS_3, "4": gmsh41.READERS}
+    return (
+        gmsh40.READERS if version in _VERSIONS_4_0 else by_version.get(version[0], gmsh22.READERS)
+    )
 
 
 def _cursor(body: bytes, order: str | None) -> TextCursor | BinaryCursor:
@@ -147,9 +182,9 @@ def _version(body: bytes) -> tuple[str, str | None]:
     words = line.decode("ascii", "replace").split()
     if len(words) != 3 or words[1] not in ("0", "1"):
         raise FormatError(f"$MeshFormat: {line!r} is not a version, a type and a size")
-    if words[0] not in ("2", "2.1", "2.2", "4.1"):
+    if words[0] not in _VERSIONS:
         raise FormatError(
-            f"is of Gmsh version {words[0]}; 2.2 and 4.1 can be read: "
+            f"is of Gmsh version {words[0]}; 1, 2 to 2.2, 3, 4.0 and 4.1 can be read: "
             "`gmsh in.msh -save -format msh41 -o out.msh` converts it"
         )
     if words[2] != "8":
@@ -164,13 +199,14 @@ def _version(body: bytes) -> tuple[str, str | None]:
 
 def _read_names(body: bytes, out: Sections) -> None:
     lines = [line for line in text_of(body).splitlines() if line.strip()]
-    rows = [re.match(r'\s*(\d+)\s+(-?\d+)\s+"(.*)"\s*$', line) for line in lines[1:]]
+    rows = [re.match(r'\s*(?:(\d+)\s+)?(-?\d+)\s+"(.*)"\s*$', line) for line in lines[1:]]
     if not lines or lines[0].strip() != str(len(rows)):
         raise FormatError(f"its first line is not the number of names that follow, {len(rows)}")
     for row, line in zip(rows, lines[1:], strict=True):
         if row is None:
             raise FormatError(f'{line!r} is not: dimension, tag, "name"')
-        out.names.setdefault(int(row[1]), {})[row[3]] = int(row[2])
+        for dim in (1, 2) if row[1] is None else (int(row[1]),):  # version 2.0 does not say it
+            out.names.setdefault(dim, {})[row[3]] = int(row[2])
 
 
 def _read_ours(body: bytes, out: Sections) -> None:
@@ -204,8 +240,8 @@ def _read_view(body: bytes, order: str | None, views: dict[str, tuple[Array, Arr
     if not strings or len(integers) < 3:
         raise FormatError("its header lacks the name, the components or the count of values")
     columns, count = _integer(integers[1]), _integer(integers[2])
-    if not 1 <= columns <= 9:
-        raise FormatError(f"a view with {columns} components; 1 to 9 can be read")
+    if columns < 1:
+        raise FormatError("a view with no components")
     cursor = _cursor(body, order)
     tags_of_rows, values = cursor.rows(count, ("i4", 1), ("f8", columns))
     if cursor.left_over():
@@ -223,37 +259,55 @@ def _together(file: Sections) -> Content:
     order = np.argsort(file.node_tags, kind="stable")
     node_tags = file.node_tags[order]
     _refuse_twice("node", node_tags)
-    triangles, edges = (file.elements.get(t, _no_elements(t)) for t in (2, 1))
-    for elements in (triangles, edges):
-        by_tag = np.argsort(elements.tags, kind="stable")
-        elements.tags, elements.physical = elements.tags[by_tag], elements.physical[by_tag]
-        elements.nodes = _numbers(elements.nodes[by_tag], node_tags, elements.tags)
+    (triangles, inside), (edges, on_edges) = (_cells(file, dim, node_tags) for dim in (2, 1))
     plane = file.ours.get("plane_fields", [])
-    names, regions = file.names.get(1, {}), file.names.get(2, {})
-    point_fields = {
-        name: _field(name, view, node_tags, plane) for name, view in file.node_data.items()
-    }
-    return Content(
+    of_shape = file.ours.get("shapes", {})
+
+    def field_of(name: str, view: tuple[Array, Array], tags: Array) -> Array:
+        values = _field(name, view, tags, plane)
+        return shaped(values, of_shape.get(name)) if isinstance(of_shape, dict) else values
+
+    point_fields = {name: field_of(name, view, node_tags) for name, view in file.node_data.items()}
+    content = Content(
         file.points[order],
         triangles.nodes,
         triangles.physical,
         edges.nodes,
         edges.physical,
-        names=file.ours.get("edges", names),
-        region_names=file.ours.get("regions", regions),
+        names=file.ours.get("edges", file.names.get(1, {})),
+        region_names=file.ours.get("regions", file.names.get(2, {})),
         metric=take_metric(point_fields),
         point_fields=point_fields,
         triangle_fields={
-            name: _field(name, view, triangles.tags, plane)
+            name: field_of(name, view, triangles.tags)
             for name, view in file.element_data.items()
             if np.isin(view[0], triangles.tags).any()
         },
     )
+    name_several(file, 1, content.edge_tags, content.names)
+    name_several(file, 2, content.regions, content.region_names)
+    content.others = np.concatenate([inside, on_edges])
+    return content
 
 
-def _no_elements(kind: int) -> Elements:
+def _cells(file: Sections, dim: int, node_tags: Array) -> tuple[Elements, Array]:
+    """Edges or triangles in the order of their tags, and nodes of them that are no corners."""
+    parts = [e for kind, e in file.elements.items() if DIMENSION_OF_TYPE[kind] == dim]
     nothing = np.empty(0, np.int64)
-    return Elements(nothing, np.empty((0, NODES_OF_TYPE[kind]), np.int64), nothing)
+    tags = np.concatenate([nothing, *(e.tags for e in parts)])
+    corners = np.concatenate(
+        [np.empty((0, dim + 1), np.int64), *(e.nodes[:, : dim + 1] for e in parts)]
+    )
+    physical = np.concatenate([nothing, *(e.physical for e in parts)])
+    others = [
+        _numbers(e.nodes[:, dim + 1 :], node_tags, e.tags).ravel()
+        for e in parts
+        if e.nodes.shape[1] > dim + 1
+    ]
+    by_tag = np.argsort(tags, kind="stable")
+    nodes = _numbers(corners[by_tag], node_tags, tags[by_tag])
+    cells = in_several(file, dim, Elements(tags[by_tag], nodes, physical[by_tag]))
+    return cells, np.concatenate([nothing, *others])
 
 
 def _refuse_twice(kind: str, sorted_tags: Array) -> None:
@@ -336,9 +390,11 @@ def _names_sections(content: Content) -> list[bytes]:
         lines += [f'{dim} {tag} "{name}"\n' for tag, name in sorted(shown.items())]
         if {name: tag for tag, name in shown.items()} != names:
             ours[key] = dict(names)
-    plane = plane_fields(content)
+    plane, of_shape = plane_fields(content), shapes(content)
     if plane:
         ours["plane_fields"] = plane
+    if of_shape:
+        ours["shapes"] = of_shape
     parts = []
     if lines:
         parts.append(section("PhysicalNames", f"{len(lines)}\n{''.join(lines)}".encode()))
@@ -362,6 +418,17 @@ def _view(name: str, values: Array, order: Array, binary: bool) -> bytes:
 
     Each row bears its tag, so any order would do for Gmsh; but meshio does not look at the tags.
     """
-    rows = spatial(values.reshape(len(values), -1)[order])
+    rows = _of_gmsh(name, spatial(values.reshape(len(values), -1)[order]))
     header = f'1\n"{name}"\n1\n0\n3\n0\n{rows.shape[1]}\n{len(rows)}\n'.encode()
     return header + table(binary, ("i4", order + 1), ("f8", rows))
+
+
+def _of_gmsh(name: str, rows: Array) -> Array:
+    """Rows of 1, 3 or 9 columns, which Gmsh reads, with zeros behind others."""
+    width = next((w for w in (1, 3, 9) if w >= rows.shape[1]), None)
+    if width is None:
+        raise FormatError(
+            f"field {name!r} has {rows.shape[1]} values at each place; .msh holds at most 9: split "
+            "it, or write .vtu"
+        )
+    return np.pad(rows, [(0, 0), (0, width - rows.shape[1])])

@@ -61,25 +61,13 @@ def _read_elements(cursor: Cursor, out: Sections) -> None:
         if not size:
             continue
         tags, nodes = cursor.rows(size, ("u8", 1), ("u8", NODES_OF_TYPE[kind]))
-        group = np.full(size, _group(out, dim, entity) if kind != 15 else 0)
+        group = np.full(size, out.group_of(dim, entity) if kind != 15 else 0)
         found.setdefault(kind, []).append(Elements(tags[:, 0], nodes, group))
         done += size
     if done != count:
         raise FormatError(f"{count} elements are announced, {done} are there")
     for kind, parts in found.items():
         out.add(kind, parts)
-
-
-def _group(out: Sections, dim: int, entity: int) -> int:
-    groups = out.groups.get((dim, entity), [])
-    if len(groups) > 1:
-        names = {tag: name for name, tag in out.names.get(dim, {}).items()}
-        listed = " and ".join(f"{g} ({names[g]!r})" if g in names else str(g) for g in groups)
-        raise FormatError(
-            f"{('point', 'curve', 'surface', 'volume')[dim]} {entity} is in {len(groups)} physical "
-            f"groups, {listed}; an edge or triangle has one tag here: keep it in one group only"
-        )
-    return groups[0] if groups else 0
 
 
 READERS: dict[str, Callable[[Cursor, Sections], None]] = {

@@ -21,12 +21,13 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping
 
 import numpy as np
 
 from ..errors import FormatError
 from .bounded import read_json
-from .content import Content, refuse_cells
+from .content import Array, Content, refuse_cells
 from .files import text_of
 from .located import located
 from .medit_keywords import (
@@ -42,10 +43,10 @@ from .medit_keywords import (
 from .records import table
 
 # columns of integers, the last of which is the reference
-_CELLS = {"Edges": 3, "Triangles": 4}
+_CELLS = {"Edges": 3, "Triangles": 4, "EdgesP2": 4, "TrianglesP2": 7}
 _OTHER_CELLS = {
     "Quadrilaterals": 5, "Tetrahedra": 5, "Prisms": 7, "Pyramids": 6, "Hexahedra": 9,
-    "Hexaedra": 9, "TrianglesP2": 7, "EdgesP2": 4,
+    "Hexaedra": 9,
 }  # fmt: skip
 _REQUIRED = ("RequiredVertices", "RequiredEdges", "Corners")
 _NAME_BYTES = 256
@@ -82,18 +83,32 @@ def decode(data: bytes, *, binary: bool) -> Content:
     if vertices is None:
         raise FormatError("has no Vertices")
     refuse_cells({name: len(cells[name]) for name in _OTHER_CELLS if name in cells})
-    triangles = cells.get("Triangles", np.empty((0, 4), np.int64))
-    edges = cells.get("Edges", np.empty((0, 3), np.int64))
+    triangles, regions, inside = _of_any_order(cells, "Triangles", 3)
+    edges, tags, on_edges = _of_any_order(cells, "Edges", 2)
     return Content(
         vertices,
-        triangles[:, :3] - 1,
-        triangles[:, 3],
-        edges[:, :2] - 1,
-        edges[:, 2],
+        triangles,
+        regions,
+        edges,
+        tags,
         names=names["edge"],
         region_names=names["region"],
         required_points=np.union1d(required["RequiredVertices"], required["Corners"]),
         required_edges=required["RequiredEdges"],
+        others=np.concatenate([inside, on_edges]),
+    )
+
+
+def _of_any_order(
+    cells: Mapping[str, Array], kind: str, corners: int
+) -> tuple[Array, Array, Array]:
+    """Corners from 0 and references of cells, and all other nodes of those of second order."""
+    linear = cells.get(kind, np.empty((0, _CELLS[kind]), np.int64))
+    curved = cells.get(f"{kind}P2", np.empty((0, _CELLS[f"{kind}P2"]), np.int64))
+    return (
+        np.concatenate([linear[:, :corners], curved[:, :corners]]) - 1,
+        np.concatenate([linear[:, -1], curved[:, -1]]),
+        curved[:, corners:-1].ravel() - 1,
     )
 
 

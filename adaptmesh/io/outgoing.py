@@ -91,14 +91,18 @@ def solution_values(values: ArrayLike) -> Array:
 
 
 def _field(name: str, values: ArrayLike) -> Array:
-    """A field as float64 or as integers of at most 64 bits, (n,), (n, 2) or (n, 3)."""
+    """A field as float64 or as integers of at most 64 bits, (n,) or (n, ...)."""
     if name in _RESERVED:
         raise FormatError(f"{name!r} is the name of what the file holds anyway; rename the field")
     if not name or not name.isprintable() or set(name) & set('"$&<>') or name != name.strip():
         raise FormatError(
             f'{name!r} cannot be the name of a field; leave out " $ & < > and blanks at its ends'
         )
-    array = _of_few_columns(f"field {name!r}", _real(f"field {name!r}", values))
+    array = _real(f"field {name!r}", values)
+    if array.ndim == 0 or 0 in array.shape[1:]:
+        raise FormatError(f"field {name!r} has shape {array.shape}; it must be (n,) or (n, ...)")
+    if array.ndim == 2 and array.shape[1] == 1:
+        array = array[:, 0]
     if array.dtype.kind == "b":
         return array.astype(np.uint8)
     return array if array.dtype.kind in "iu" else array.astype(np.float64)

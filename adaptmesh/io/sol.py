@@ -26,6 +26,7 @@ from .files import read_bytes
 from .located import located
 from .medit_keywords import MeditFile, binary_file, count, dimension, opened, text_file
 from .records import one, table
+from .spatial import flat
 
 SCALAR, VECTOR, TENSOR = 1, 2, 3
 _PLACES = ("SolAtVertices", "SolAtTriangles")
@@ -43,10 +44,13 @@ class Solution(NamedTuple):
 def encode(values: Array, *, tensor: bool, place: str, binary: bool) -> bytes:
     """The bytes of a file with one field: (n,) scalars, (n, 2) vectors, (n, 3) tensors.
 
-    Three columns that are no tensor are three scalars.
+    Three columns that are no tensor are three scalars, and so are more.
     """
+    values = flat(values)
     columns = 1 if values.ndim == 1 else values.shape[1]
-    types = [TENSOR] if tensor else {1: [SCALAR], 2: [VECTOR], 3: [SCALAR] * 3}[columns]
+    if columns > _MOST_TYPES:
+        raise FormatError(f"a field of {columns} columns; .sol holds at most {_MOST_TYPES}")
+    types = [TENSOR] if tensor else [VECTOR] if columns == 2 else [SCALAR] * columns
     keyword = (place, [len(values), len(types), *types], table(binary, ("f8", values)))
     return (binary_file if binary else text_file)([keyword])
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from .content import Array, Content
@@ -9,9 +11,33 @@ from .content import Array, Content
 
 def spatial(values: Array) -> Array:
     """Vectors (n, 2) with a third component of zero; anything else as it is."""
-    if values.ndim == 1 or values.shape[1] != 2:
+    if values.ndim != 2 or values.shape[1] != 2:
         return values
     return np.column_stack([values, np.zeros(len(values), values.dtype)])
+
+
+def shapes(content: Content) -> dict[str, list[int]]:
+    """Shapes of the values of fields that are neither scalars nor vectors, by name."""
+    fields = {**content.point_fields, **content.triangle_fields}
+    return {
+        name: list(values.shape[1:])
+        for name, values in fields.items()
+        if values.ndim > 2 or (values.ndim == 2 and values.shape[1] > 3)
+    }
+
+
+def flat(values: Array) -> Array:
+    """Values with more than one axis as columns, (n, c)."""
+    return values if values.ndim < 3 else values.reshape(len(values), -1)
+
+
+def shaped(values: Array, shape: object) -> Array:
+    """The inverse of `flat`: columns beyond those of the shape are left out."""
+    if not isinstance(shape, (list, tuple)) or not all(type(k) is int and k > 0 for k in shape):
+        return values
+    columns = values.reshape(len(values), -1)
+    size = math.prod(shape)
+    return columns[:, :size].reshape(len(values), *shape) if size <= columns.shape[1] else values
 
 
 def plane_fields(content: Content) -> list[str]:

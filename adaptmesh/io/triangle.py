@@ -106,7 +106,7 @@ def decode(path: Path) -> Content:
     """What `.ele`, `.node` and, if it is there, `.poly` say."""
     ele, node = Table(path), Table(path.with_suffix(".node"))
     points = read_points(node)
-    triangles, regions, triangle_fields = _triangles(ele, points.first)
+    triangles, others, regions, triangle_fields = _triangles(ele, points.first)
     edges, tags, names = _edges(path.with_suffix(".poly"), points.first, len(points.places))
     content = Content(
         points.places,
@@ -118,12 +118,14 @@ def decode(path: Path) -> Content:
         region_names=ele.names("regions"),
         point_fields=node.fields(points.attributes),
         triangle_fields=triangle_fields,
+        others=others,
     )
     content.metric = content.point_fields.pop("metric", None)
     return content
 
 
-def _triangles(ele: Table, first: int) -> tuple[Array, Array, dict[str, Array]]:
+def _triangles(ele: Table, first: int) -> tuple[Array, Array, Array, dict[str, Array]]:
+    """Corners, all other nodes, regions, and fields."""
     count, corners, attributes = ele.header("triangles", 3, 0)
     if corners not in (3, 6):
         raise ele.error(f"triangles of {corners} points; 3 can be read, or 6")
@@ -131,8 +133,10 @@ def _triangles(ele: Table, first: int) -> tuple[Array, Array, dict[str, Array]]:
     extra = rows[:, 1 + corners :]
     is_region = attributes > 0 and (extra[:, 0] == np.round(extra[:, 0])).all()
     regions = extra[:, :1] if is_region else np.zeros((count, 1))
-    vertices = ele.whole("triangle", rows[:, 1:4]) - first
-    return vertices, ele.whole("region", regions)[:, 0], ele.fields(extra, skip=int(is_region))
+    nodes = ele.whole("triangle", rows[:, 1 : 1 + corners]) - first
+    regions = ele.whole("region", regions)[:, 0]
+    fields = ele.fields(extra, skip=int(is_region))
+    return nodes[:, :3], nodes[:, 3:].ravel(), regions, fields
 
 
 def _edges(path: Path, first: int, n_points: int) -> tuple[Array, Array, dict[str, int]]:

@@ -12,6 +12,7 @@ One grid holds the triangles (VTK type 5) and after them the constrained edges (
     FieldData   edge_tags: inlet    tag of the edges that bear a name
                 regions: steel      number of a named region
                 columns: u          2 for a field that had 2 columns
+                shape: s            that of the values of a field with more than one axis
 
 Names are in the names of arrays because meshio, through which many read VTK's files, stops at
 arrays of strings. There ``% " & < >`` and control characters are %25, %22, ..., since VTK does not
@@ -23,21 +24,33 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from ..errors import FormatError
 from .content import Array, Content, refuse_cells
-from .spatial import plane_fields, spatial, spatial_tensor, take_metric
+from .spatial import (
+    flat,
+    plane_fields,
+    shaped,
+    shapes,
+    spatial,
+    spatial_tensor,
+    take_metric,
+)
 
 _VERTICES, _LINE, _TRIANGLE = (1, 2), 3, 5
 _KINDS = {
     4: "polylines", 6: "triangle strips", 7: "polygons", 8: "pixels", 9: "quadrilaterals",
     10: "tetrahedra", 11: "voxels", 12: "hexahedra", 13: "wedges", 14: "pyramids",
-    21: "quadratic edges", 22: "quadratic triangles", 23: "quadratic quadrilaterals",
+    23: "quadratic quadrilaterals",
     42: "polyhedra",
 }  # fmt: skip
-_EDGE, _REGION, _COLUMNS = "edge_tags: ", "regions: ", "columns: "
+_EDGES = (_LINE, 21, 35, 68, 75)  # linear, quadratic, cubic, of Lagrange and Bézier
+_TRIANGLES = (_TRIANGLE, 22, 34, 69, 76)
+_EDGE, _REGION, _COLUMNS, _SHAPE = "edge_tags: ", "regions: ", "columns: ", "shape: "
+_OURS = (_EDGE, _REGION, _COLUMNS, _SHAPE)
 
 
 @dataclass
@@ -63,7 +76,7 @@ class Grid:
 def grid_of(content: Content) -> Grid:
     """The grid that a file of this content holds."""
     m, k = len(content.triangles), len(content.edges)
-    point_data = {name: spatial(a) for name, a in content.point_fields.items()}
+    point_data = {name: flat(spatial(a)) for name, a in content.point_fields.items()}
     if content.metric is not None:
         point_data["metric"] = spatial_tensor(content.metric)
     cell_data = {
@@ -71,11 +84,12 @@ def grid_of(content: Content) -> Grid:
         "edge_tags": np.concatenate([np.zeros(m, np.int32), content.edge_tags]),
     }
     for name, values in content.triangle_fields.items():
-        cell_data[name] = _padded(spatial(values), k)
+        cell_data[name] = _padded(flat(spatial(values)), k)
     numbers = {
         **{f"{_EDGE}{_escaped(name)}": tag for name, tag in content.names.items()},
         **{f"{_REGION}{_escaped(name)}": tag for name, tag in content.region_names.items()},
         **{f"{_COLUMNS}{name}": 2 for name in plane_fields(content)},
+        **{f"{_SHAPE}{name}": shape for name, shape in shapes(content).items() if len(shape) > 1},
     }
     return Grid(
         np.column_stack([content.points, np.zeros(len(content.points))]),
@@ -84,7 +98,7 @@ def grid_of(content: Content) -> Grid:
         np.repeat(np.array([_TRIANGLE, _LINE], np.uint8), [m, k]),
         point_data,
         cell_data,
-        {name: np.array([number], np.int32) for name, number in numbers.items()},
+        {name: np.array(number, np.int32).reshape(-1) for name, number in numbers.items()},
     )
 
 
@@ -109,7 +123,7 @@ def content_of(grid: Grid) -> Content:
     points = grid.points
     if points.ndim != 2 or points.shape[1] != 3:
         raise FormatError(f"the points have shape {points.shape}; three coordinates were expected")
-    triangles, edges, is_triangle, is_edge = _cells(grid)
+    triangles, edges, is_triangle, is_edge, others = _cells(grid)
     _same_lengths("points", grid.point_data, len(points))
     _same_lengths("cells", grid.cell_data, len(grid.types))
     point_data, cell_data = dict(grid.point_data), dict(grid.cell_data)
@@ -123,6 +137,7 @@ def content_of(grid: Grid) -> Content:
         point_fields=point_data,
         triangle_fields={name: values[is_triangle] for name, values in cell_data.items()},
         metric=metric,
+        others=others,
     )
 
 
@@ -134,24 +149,38 @@ def _same_lengths(what: str, arrays: Mapping[str, Array], count: int) -> None:
             )
 
 
-def _cells(grid: Grid) -> tuple[Array, Array, Array, Array]:
-    """Triangles, edges, and which cells are the ones and the others."""
+class _Cells(NamedTuple):
+    """Triangles and edges by their corners, which cells they are, and all other nodes of them."""
+
+    triangles: Array
+    edges: Array
+    is_triangle: Array
+    is_edge: Array
+    others: Array
+
+
+def _cells(grid: Grid) -> _Cells:
     vertices, ends, types = grid.connectivity, grid.offsets, grid.types
     rises = len(ends) and ends[0] == 0 and (ends[1:] >= ends[:-1]).all()
     if not rises or ends[-1] != len(vertices) or len(types) != len(ends) - 1:
         raise FormatError("the vertices of the cells, their numbers and types do not fit together")
     starts, sizes = ends[:-1], np.diff(ends)
-    known = np.isin(types, [0, *_VERTICES, _LINE, _TRIANGLE])
+    known = np.isin(types, [0, *_VERTICES, *_EDGES, *_TRIANGLES])
     others, counts = np.unique(types[~known], return_counts=True)
     found = zip(others.tolist(), counts.tolist(), strict=True)
     refuse_cells({_KINDS.get(t, f"cells of VTK type {t}"): count for t, count in found})
-    is_triangle, is_edge = types == _TRIANGLE, types == _LINE
-    if (sizes[is_triangle] != 3).any() or (sizes[is_edge] != 2).any():
-        raise FormatError("a triangle without 3 or a line without 2 vertices")
     vertices = vertices.astype(np.int64)
-    triangles = vertices[starts[is_triangle, None] + np.arange(3)]
-    edges = vertices[starts[is_edge, None] + np.arange(2)]
-    return triangles, edges, is_triangle, is_edge
+    is_triangle, is_edge = np.isin(types, _TRIANGLES), np.isin(types, _EDGES)
+    corners, no_corners = [], []
+    for cells, count, linear in ((is_triangle, 3, _TRIANGLE), (is_edge, 2, _LINE)):
+        exactly = types == linear
+        if (sizes[cells] < count).any() or (sizes[exactly] != count).any():
+            raise FormatError("a triangle without 3 or a line without 2 vertices")
+        corners.append(vertices[starts[cells, None] + np.arange(count)])
+        curved = np.flatnonzero(cells & ~exactly)
+        rest = [vertices[starts[k] + count : ends[k + 1]] for k in curved.tolist()]
+        no_corners.append(np.concatenate([np.empty(0, np.int64), *rest]))
+    return _Cells(corners[0], corners[1], is_triangle, is_edge, np.concatenate(no_corners))
 
 
 def _tags(cell_data: dict[str, Array], name: str, rows: Array) -> Array:
@@ -165,14 +194,19 @@ def _tags(cell_data: dict[str, Array], name: str, rows: Array) -> Array:
 
 def is_ours(name: str) -> bool:
     """Whether the field of that name says what a number stands for."""
-    return name.startswith((_EDGE, _REGION, _COLUMNS))
+    return name.startswith(_OURS)
 
 
 def take_names(content: Content, fields: Mapping[str, Array]) -> None:
     """Put names into the content, and leave the columns of its fields that it had."""
     for full, number in fields.items():
-        prefix = next(p for p in (_EDGE, _REGION, _COLUMNS) if full.startswith(p))
+        prefix = next(p for p in _OURS if full.startswith(p))
         name = full.removeprefix(prefix)
+        if prefix == _SHAPE and number.dtype.kind in "iu":
+            for of in (content.point_fields, content.triangle_fields):
+                if name in of:
+                    of[name] = shaped(of[name], number.ravel().tolist())
+            continue
         if number.shape != (1,) or number.dtype.kind not in "iu":
             raise FormatError(f"FieldData {prefix}{name!r} is not one integer")
         if prefix != _COLUMNS:

@@ -7,6 +7,7 @@ FieldData, and of a file with several pieces it reads only the cells of the last
 from __future__ import annotations
 
 import base64
+import warnings
 import zlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
@@ -14,7 +15,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from ..errors import FormatError
+from ..errors import FormatError, FormatWarning
 from .bounded import Allowance, read_xml
 from .content import Array, Content, check_vertices
 from .vtk_grid import Grid, content_of, grid_of, is_ours, take_names
@@ -33,7 +34,8 @@ def encode(content: Content) -> bytes:
     """The bytes of a `.vtu` file."""
     grid = grid_of(content)
     field_data = [
-        _data_array(name, values, 'NumberOfTuples="1" ') for name, values in grid.fields.items()
+        _data_array(name, values, f'NumberOfTuples="{len(values)}" ')
+        for name, values in grid.fields.items()
     ]
     cells = {
         "connectivity": grid.connectivity,
@@ -129,7 +131,7 @@ def _opened(data: bytes) -> tuple[Element, VtuArrays]:
 def _piece(piece: Element, arrays: VtuArrays) -> Content:
     def section(tag: str) -> dict[str, Array]:
         found = piece.iterfind(f"{tag}/DataArray")
-        return {a.get("Name", tag): arrays.read(a) for a in found}
+        return {a.get("Name", tag): arrays.read(a) for a in found if _has_numbers(a)}
 
     points = next(iter(section("Points").values()), np.empty((0, 3)))
     cells, point_data, cell_data = section("Cells"), section("PointData"), section("CellData")
@@ -139,6 +141,8 @@ def _piece(piece: Element, arrays: VtuArrays) -> Content:
     types = cells["types"].ravel()
     _same_length("<Points>", len(points), "NumberOfPoints", piece)
     _same_length("<Cells>", len(types), "NumberOfCells", piece)
+    point_data = {name: _in_rows(values, len(points)) for name, values in point_data.items()}
+    cell_data = {name: _in_rows(values, len(types)) for name, values in cell_data.items()}
     for name, values in point_data.items():
         _same_length(f"point array {name!r}", len(values), "NumberOfPoints", piece)
     for name, values in cell_data.items():
@@ -148,6 +152,24 @@ def _piece(piece: Element, arrays: VtuArrays) -> Content:
     return content_of(
         Grid(points, cells["connectivity"].ravel(), offsets, types, point_data, cell_data)
     )
+
+
+def _in_rows(values: Array, count: int) -> Array:
+    """A tensor field of meshio, which does not say how many components it has, in as many rows."""
+    several = values.ndim == 1 and count > 0 and len(values) > count and len(values) % count == 0
+    return values.reshape(count, -1) if several else values
+
+
+def _has_numbers(array: Element) -> bool:
+    """Whether an array holds numbers, not texts; a `FormatWarning` names one that does not."""
+    kind = array.get("type", "")
+    if kind in ("String", "Variant"):
+        warnings.warn(
+            f"array {array.get('Name')!r} is passed over: it holds values of type {kind}",
+            FormatWarning,
+            stacklevel=9,
+        )
+    return kind not in ("String", "Variant")
 
 
 def _same_length(what: str, length: int, attribute: str, piece: Element) -> None:
@@ -179,6 +201,7 @@ def _joined(pieces: list[Content]) -> Content:
         point_fields=_joined_fields([p.point_fields for p in pieces]),
         triangle_fields=_joined_fields([p.triangle_fields for p in pieces]),
         metric=np.concatenate(metrics) if metrics else None,
+        others=np.concatenate([p.others + s for p, s in zip(pieces, shifts, strict=True)]),
     )
 
 

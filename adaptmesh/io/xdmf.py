@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import io
 import json
+import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,7 +25,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from ..errors import FormatError
+from ..errors import FormatError, FormatWarning
 from .bounded import read_json, read_xml
 from .content import Array, Content, check_vertices, refuse_cells
 from .hdf5 import import_h5py
@@ -34,8 +35,14 @@ if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
 _CELLS, _FACETS = "cell_tags", "facet_tags"
-_WIDTHS = {"triangle": 3, "polyline": 2, "polyvertex": 1}
-_MIXED = {1: "polyvertex", 2: "polyline", 4: "triangle"}  # numbers of XDMF
+_WIDTHS = {
+    "triangle": 3, "triangle_6": 6, "tri_6": 6, "polyline": 2, "edge_3": 3, "polyvertex": 1,
+}  # fmt: skip
+_MIXED = {1: "polyvertex", 2: "polyline", 4: "triangle", 34: "edge_3", 36: "tri_6"}
+"""Kinds of cells by their number in mixed topologies."""
+_CORNERS = {"triangle_6": "triangle", "tri_6": "triangle", "edge_3": "polyline"}
+"""What is left of cells of second order."""
+_MOST_NODES = 6
 
 
 # ---------------------------------------------------------------------------------------- writing
@@ -112,6 +119,7 @@ class _Written:
     def attribute(self, name: str, center: str, values: Array) -> str:
         columns = values.shape[1] if values.ndim == 2 else 1
         kind = "Scalar" if values.ndim == 1 else "Vector" if columns <= 3 else "Matrix"
+        kind = "Tensor" if values.shape[1:] == (3, 3) else kind
         return self.item(
             "Attribute",
             f"{center}/{len(self._file.get(center, ()))}",
@@ -154,6 +162,7 @@ def decode(data: bytes, folder: Path) -> Content:
         region_names=_names(domain, "region_names"),
         point_fields=first.point_fields,
         triangle_fields=first.triangle_fields,
+        others=first.others,
     )
     content.metric = content.point_fields.pop("metric", None)
     if _is_integer(content.triangle_fields.get(_CELLS)):
@@ -202,8 +211,10 @@ class _Grid:
         self.name = grid.get("Name", "")
         self.points = self._geometry(grid, arrays)
         kinds, cells = self._topology(grid, arrays)
+        self.others = _no_corners(kinds, cells)
+        kinds = np.array([_CORNERS.get(kind, kind) for kind in kinds.tolist()], object)
         is_triangle, is_edge = kinds == "triangle", kinds == "polyline"
-        self.triangles, self.edges = cells[is_triangle], cells[is_edge][:, :2]
+        self.triangles, self.edges = cells[is_triangle][:, :3], cells[is_edge][:, :2]
         self.point_fields: dict[str, Array] = {}
         self.triangle_fields: dict[str, Array] = {}
         self.tags: Array | None = None
@@ -213,14 +224,21 @@ class _Grid:
             if attribute.get("Center", "Node") == "Node":
                 self._check(name, values, len(self.points), "points")
                 self.point_fields[name] = values
-            elif attribute.get("Center") == "Cell":
+            elif attribute.get("Center") != "Cell":
+                warnings.warn(
+                    f"field {name!r} is passed over: it is given at {attribute.get('Center')!r}, "
+                    "neither at points nor at cells",
+                    FormatWarning,
+                    stacklevel=7,
+                )
+            else:
                 self._check(name, values, len(kinds), "cells")
                 self.triangle_fields[name] = values[is_triangle]
                 if _is_integer(values):
                     self.tags = values[is_triangle if is_triangle.any() else is_edge]
 
     def _check(self, name: str, values: Array, count: int, what: str) -> None:
-        if values.ndim not in (1, 2) or len(values) != count:
+        if values.ndim < 1 or len(values) != count:
             raise FormatError(
                 f"attribute {name!r} of grid {self.name!r} has shape {values.shape} for "
                 f"{count} {what}"
@@ -236,7 +254,7 @@ class _Grid:
         return points
 
     def _topology(self, grid: Element, arrays: XdmfArrays) -> tuple[Array, Array]:
-        """The kind of each cell, and its vertices in a row of three."""
+        """The kind of each cell, and its nodes in a row of `_MOST_NODES`."""
         topology = grid.find("Topology")
         if topology is None:
             raise FormatError(f"grid {self.name!r} has no <Topology>")
@@ -246,15 +264,17 @@ class _Grid:
             raise FormatError(f"grid {self.name!r}: the vertex numbers are not integers")
         if kind == "mixed":
             return _unmixed(vertices.ravel().astype(np.int64))
+        if kind == "polyline" and topology.get("NodesPerElement") == "3":  # of DOLFINx
+            kind = "edge_3"
         width = _WIDTHS.get(kind, 0)
         if not width:
             refuse_cells({f"cells of type {kind!r}": max(1, len(vertices))})
         if not width or vertices.size % width:
             raise FormatError(f"grid {self.name!r}: {vertices.size} vertices of {kind}s")
         rows = vertices.reshape(-1, width).astype(np.int64)
-        cells = np.zeros((len(rows), 3), np.int64)
+        cells = np.zeros((len(rows), _MOST_NODES), np.int64)
         cells[:, :width] = rows
-        return np.full(len(rows), kind), cells
+        return np.full(len(rows), kind, object), cells
 
 
 def _unmixed(numbers: Array) -> tuple[Array, Array]:
@@ -268,7 +288,7 @@ def _unmixed(numbers: Array) -> tuple[Array, Array]:
             break
         width = _WIDTHS[kind]
         i += 1
-        if kind != "triangle":
+        if kind in ("polyvertex", "polyline"):
             if i >= len(flat) or flat[i] != width:
                 raise FormatError(f"a {kind} in a mixed topology does not have {width} vertices")
             i += 1
@@ -276,9 +296,15 @@ def _unmixed(numbers: Array) -> tuple[Array, Array]:
         if len(row) < width:
             raise FormatError("the mixed topology is cut short")
         kinds.append(kind)
-        rows.append(row + [0] * (3 - width))
+        rows.append(row + [0] * (_MOST_NODES - width))
         i += width
-    return np.array(kinds, dtype=object), np.array(rows, np.int64).reshape(-1, 3)
+    return np.array(kinds, dtype=object), np.array(rows, np.int64).reshape(-1, _MOST_NODES)
+
+
+def _no_corners(kinds: Array, cells: Array) -> Array:
+    """Nodes of cells of second order that are no corners."""
+    triangles = np.isin(kinds, ("triangle_6", "tri_6"))
+    return np.concatenate([cells[triangles][:, 3:6].ravel(), cells[kinds == "edge_3"][:, 2]])
 
 
 def _take_tags(content: Content, grid: _Grid) -> None:
@@ -292,6 +318,7 @@ def _take_tags(content: Content, grid: _Grid) -> None:
         content.regions = _matched(content.triangles, grid.triangles, grid.tags)
     elif len(grid.edges):
         content.edges, content.edge_tags = grid.edges, grid.tags
+        content.others = np.concatenate([content.others, grid.others])
 
 
 def _matched(triangles: Array, tagged: Array, tags: Array) -> Array:

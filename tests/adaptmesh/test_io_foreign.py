@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from adaptmesh import io
-from adaptmesh.errors import FormatError
+from adaptmesh.errors import FormatError, FormatWarning
 
 # a unit square of two triangles: 0 (0, 0), 1 (1, 0), 2 (1, 1), 3 (0, 1)
 SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
@@ -419,18 +419,19 @@ def test_msh_two_groups_of_one_surface(file):
         '$PhysicalNames\n1\n2 7 "steel"\n$EndPhysicalNames\n'
         "$Entities\n0 0 1 0\n1 0 0 0 1 1 0 2 7 8 0\n$EndEntities\n"
     )
-    with pytest.raises(
-        FormatError, match=r"surface 1 is in 2 physical groups, 7 \('steel'\) and 8"
-    ):
-        io.read(file(".msh", msh41(before=before)))
+    with pytest.warns(FormatWarning, match=r"triangles that are in several.* 'steel\|8' \(9\)"):
+        mesh = io.read(file(".msh", msh41(before=before)))
+    assert dict(mesh.region_names) == {"steel": 7, "steel|8": 9}
+    assert mesh.regions.tolist() == [9, 9]
 
 
 @pytest.mark.parametrize(
     ("content", "message"),
     [
         ("", r"does not start with \$MeshFormat"),
-        ("solid\n", r"a section \$Name was expected"),
-        (msh22().replace("2.2 0 8", "4 0 8"), "version 4; 2.2 and 4.1 .*-format msh41"),
+        ("solid\n", r"does not start with \$MeshFormat .*JIGSAW"),
+        ("$Mesh", r"a section \$Name was expected"),
+        (msh22().replace("2.2 0 8", "5 0 8"), "version 5; 1, 2 to 2.2, .*-format msh41"),
         (msh22().replace("2.2 0 8", "2.2 0 4"), "numbers of 4 bytes"),
         (msh22().replace("2.2 0 8", "2.2 1 8"), "tells the byte order is damaged"),
         (msh22().replace("$EndElements", ""), r"\$Elements has no \$EndElements"),
