@@ -111,7 +111,7 @@ class Mesh(Value):
         first, second = u[:, 0] * v[:, 1], u[:, 1] * v[:, 0]
         out: Floats = 0.5 * (first - second)
         # Where the products cancel, what is left is mostly their rounding.
-        thin = 8 * np.abs(out) < np.abs(first) + np.abs(second)
+        thin = np.abs(out) < np.abs(first) / 8 + np.abs(second) / 8  # no overflow
         if thin.any():
             out[thin] = _core.triangle_areas(p[thin].reshape(-1, 6))
         return out
