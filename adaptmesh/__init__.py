@@ -31,6 +31,7 @@ from .history import History, Iteration
 from .io import read, read_fields, read_sol, write, write_sol
 from .loop import adapt_loop
 from .mesh import Mesh
+from .naming import facing, nearest
 from .overlay import Overlay
 from .plot import plot
 from .prediction import predict
@@ -84,8 +85,10 @@ __all__ = [
     "curves",
     "delaunay",
     "explain",
+    "facing",
     "generate",
     "measure",
+    "nearest",
     "plot",
     "predict",
     "read",

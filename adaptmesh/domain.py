@@ -19,6 +19,7 @@ from .domain_input import (
     Floats,
     Inside,
     Ints,
+    Label,
     checked_names,
     checked_points,
     checked_segments,
@@ -26,7 +27,9 @@ from .domain_input import (
     labelled,
     read_only,
 )
+from .domain_names import domain_with_names, sides_of_domain, tags_of_sides
 from .errors import DomainError
+from .naming import Chosen, Selector, chosen_tags, split_names
 from .periodic import Motion, PeriodicPair, periodic_pair
 from .runs import points_on
 from .value import Value
@@ -61,8 +64,10 @@ class Domain(Value):
     regions : mapping of str or int to (x, y), optional
         For each region, by its name or (if it has none) its number, a point inside it, or several
         points if it has several parts. A part without a point belongs to region 0.
-    names : mapping of str or int to sequence of int, optional
-        The segments that bear each name, or each tag that has no name. A segment bears at most one.
+    names : mapping of str or int to sequence of int, or a choice, optional
+        The segments that bear each name, or each tag that has no name: their numbers, or a function
+        of points (n, 2) that returns for each whether it is chosen, or `nearest` or `facing`; see
+        `with_names`. A segment bears at most one.
     tags, region_tags : mapping of str to int, optional
         Numbers of names, for files and solvers that know only numbers. Other names get the least
         numbers from 1 on that are free.
@@ -100,16 +105,26 @@ class Domain(Value):
         segments: ArrayLike,
         holes: ArrayLike | str | None = None,
         regions: ByLabel[ArrayLike] | None = None,
-        names: ByLabel[Iterable[int]] | None = None,
+        names: ByLabel[Chosen] | None = None,
         tags: Mapping[str, int] | None = None,
         region_tags: Mapping[str, int] | None = None,
     ) -> None:
         self.points = checked_points(points, "point")
         self.segments = checked_segments(segments, self.points)
         n = len(self.segments)
-        self.names, self.segment_tags = checked_names(names, n, "segment", tags)
+        given, selectors = split_names(names)
+        self.names, self.segment_tags = checked_names(given, n, "segment", tags)
         inside = Inside.checked(holes, regions, region_tags)
         self._build(inside, Curved.nothing(len(self.points), n))
+        self._choose(selectors)
+
+    def _choose(self, selectors: Mapping[Label, Selector]) -> None:
+        """Give names to the segments that are chosen for them, by where they are."""
+        if selectors:
+            sides = sides_of_domain(self)
+            self.segment_tags = read_only(
+                chosen_tags(self.segment_tags, selectors, self.names, sides)
+            )
 
     def _build(self, inside: Inside, curved: Curved) -> None:
         """Triangulate what points, segments, names and tags enclose."""
@@ -141,7 +156,7 @@ class Domain(Value):
         outer: Any,
         holes: Sequence[ArrayLike] | None = None,
         *,
-        names: ByLabel[Iterable[int]] | None = None,
+        names: ByLabel[Chosen] | None = None,
     ) -> Domain:
         """A domain bounded by closed rings.
 
@@ -154,7 +169,7 @@ class Domain(Value):
             collection of features becomes what `read_domain` makes of it: a region for each name.
         holes : sequence of (n, 2) array_like, optional
             The rings of the holes, within the outer one; a ring inside a hole is an island.
-        names : mapping of str or int to sequence of int, optional
+        names : mapping of str or int to sequence of int, or a choice, optional
             As in `Domain`; segments are numbered ring by ring, in the order given: each starts at
             the point of its number. A point repeated in a row counts, but has no segment.
 
@@ -176,7 +191,8 @@ class Domain(Value):
         shape.refuse_what_is_left_out()
         rings, points = rings_with_labels(shape)
         joined = joined_rings(points)
-        tag_of, tags = checked_names(names, joined.n_given, given=None)
+        given, selectors = split_names(names)
+        tag_of, tags = checked_names(given, joined.n_given)
         domain = cls(
             joined.points,
             joined.segments,
@@ -190,6 +206,7 @@ class Domain(Value):
             along = ((end - start) * (last - first)).sum(axis=1) > 0
             ring = joined.ring[domain.piece_segments]
             refuse_rings_out_of_place(shape, rings, domain.points, domain.pieces, along, ring)
+        domain._choose(selectors)
         return domain
 
     @classmethod
@@ -206,7 +223,7 @@ class Domain(Value):
         cls,
         curves: Sequence[Curve],
         *,
-        names: ByLabel[Iterable[int]] | None = None,
+        names: ByLabel[Chosen] | None = None,
         holes: ArrayLike | str | None = None,
         regions: ByLabel[ArrayLike] | None = None,
         tags: Mapping[str, int] | None = None,
@@ -226,8 +243,9 @@ class Domain(Value):
             From `adaptmesh.curves`; those of a closed boundary may come in any order and
             direction. They may meet only at ends: cut a curve where another one ends on it, or
             crosses it (`adaptmesh.curves.Curve.part`).
-        names : mapping of str or int to sequence of int, optional
-            The curves that bear each name (or tag), by number from 0. A curve bears at most one.
+        names : mapping of str or int to sequence of int, or a choice, optional
+            The curves that bear each name (or tag), by number from 0, or chosen as in
+            `with_names`. A curve bears at most one.
         holes, regions, tags, region_tags
             As in `Domain`.
         points : (m, 2) array_like
@@ -269,7 +287,8 @@ class Domain(Value):
         if isinstance(curves, Curve):
             raise DomainError(f"curves={curves!r}: a sequence of curves is wanted, [curve]")
         curves = tuple(curves)
-        numbers, tag_of = checked_names(names, len(curves), "curve", tags)
+        given, selectors = split_names(names)
+        numbers, tag_of = checked_names(given, len(curves), "curve", tags)
         inside = Inside.checked(holes, regions, region_tags)
         isolated = checked_points(points, "point", least=0)
         skeleton = skeleton_of(curves, tag_of, inside, isolated, corner_angle, join_tolerance)
@@ -278,7 +297,20 @@ class Domain(Value):
         domain.segments, domain.segment_tags = skeleton.segments, skeleton.segment_tags
         domain.names = numbers
         domain._build(inside, skeleton.curved)
-        return domain
+        if not selectors:
+            return domain
+        chosen = chosen_tags(tags_of_sides(domain), selectors, numbers, sides_of_domain(domain))
+        return cls.from_curves(
+            curves,
+            names=labelled(chosen),
+            holes=holes,
+            regions=regions,
+            tags=numbers,
+            region_tags=region_tags,
+            points=points,
+            corner_angle=corner_angle,
+            join_tolerance=join_tolerance,
+        )
 
     @classmethod
     def of_mesh(
@@ -319,6 +351,41 @@ class Domain(Value):
         from .outline import domain_of_mesh
 
         return domain_of_mesh(mesh, corner_angle, straight_tolerance)
+
+    def with_names(self, names: ByLabel[Chosen]) -> Domain:
+        """The same domain with names for sides that are chosen by where they are.
+
+        Sides are its segments, or the curves that it was made of. One that has a name gets the new
+        one in its place.
+
+        Parameters
+        ----------
+        names : mapping of str or int to a choice
+            For each name or tag one of
+
+            - a function of points (n, 2) that returns bool (n,): the sides on which it holds. It is
+              asked at places on each side, but not at its ends, which others share;
+            - ``adaptmesh.nearest((x, y), ...)``: the side nearest to each point;
+            - ``adaptmesh.facing((dx, dy))``: the sides of the border whose outward normal has this
+              direction, to 30 degrees if nothing else is said;
+            - numbers of segments, or of curves.
+
+        Raises
+        ------
+        DomainError
+            A choice is empty, holds on a part of a side only, or returns something else; two names
+            are given to one side; or a side is periodic, or (of a domain of curves) frozen.
+
+        Examples
+        --------
+        >>> import adaptmesh as am
+        >>> cell, repairs = am.repair([(0, 0), (1, 0), (1, 0.5), (1, 1), (0, 1)])
+        >>> right = lambda x: x[:, 0] > 1 - 1e-9
+        >>> cell = cell.with_names({"left": am.facing((-1, 0)), "right": right})
+        >>> cell.segment_tags.tolist()
+        [0, 1, 2, 2, 0]
+        """
+        return domain_with_names(self, names)
 
     def tag_named(self, name: str) -> int:
         """The tag of a boundary or line by its name, or a `DomainError`."""
@@ -449,7 +516,7 @@ class Domain(Value):
         a, b = self.segments[segments].astype(np.int64).T
         return np.isin(a * n + b, halves[:, 0].astype(np.int64) * n + halves[:, 1])
 
-    def outline(self, tolerance: float) -> Floats:
+    def outline(self, tolerance: float, *, names: Iterable[str] | None = None) -> Floats:
         """All boundaries and internal lines as straight segments, curves to a tolerance.
 
         For what measures distances from them, `metrics.Geometry` and all that takes one: a layer on
@@ -459,6 +526,8 @@ class Domain(Value):
         ----------
         tolerance : float
             No curve is further than about this from its segments; at least 1e-10 of the extent.
+        names : sequence of str, optional
+            Of the boundaries and lines to return; all if not given.
 
         Returns
         -------
@@ -477,10 +546,18 @@ class Domain(Value):
         least = SMALLEST_TOLERANCE * float(np.ptp(self.points, axis=0).max())
         if not tolerance >= least:
             raise DomainError(f"tolerance={tolerance}: at least {least:g} is wanted")
-        straight = self.points[self.segments[self.curved.segment_runs < 0]]
+        if isinstance(names, str):
+            raise TypeError(f"names={names!r}: give a list of names, [{names!r}]")
+        of_run = self.curved.segment_runs
+        asked = np.ones(len(self.segments), bool)
+        if names is not None:
+            asked = np.isin(self.segment_tags, [self.tag_named(name) for name in names])
+        straight = self.points[self.segments[asked & (of_run < 0)]]
         if not self.curved.runs:
             return straight
         run, u = self.curved.chords_within(tolerance)
+        mine = np.isin(run, of_run[asked])
+        run, u = run[mine], u[mine]
         ends = points_on(self.curved.runs, np.repeat(run, 2), u.ravel()).reshape(-1, 2, 2)
         return np.concatenate([straight, ends])
 

@@ -170,8 +170,9 @@ def checked_names(
     tag_of, numbers = numbered(names, given, "tag")
     tags = np.zeros(n, np.int32)
     for tag, (name, segments) in zip(numbers, names.items(), strict=True):
-        for i in segments:
-            if not isinstance(i, (int, np.integer)) or not 0 <= i < n:
+        for i in _checked_numbers(segments, name, what):
+            is_number = isinstance(i, (int, np.integer)) and not isinstance(i, bool)
+            if not is_number or not 0 <= i < n:
                 raise DomainError(
                     f"name {name!r} is given to {what} {i!r}, but the {what}s are numbered "
                     f"0 to {n - 1}"
@@ -181,6 +182,16 @@ def checked_names(
                 raise DomainError(f"{what} {i} is named both {other!r} and {name!r}: choose one")
             tags[i] = tag
     return tag_of, read_only(tags)
+
+
+def _checked_numbers(numbers: object, name: object, what: str) -> Iterable[Any]:
+    """What a name is given to, if it is a sequence, or a `DomainError`."""
+    if not isinstance(numbers, Iterable):
+        raise DomainError(
+            f"name {name!r} is given to {numbers!r}: expected a sequence of numbers of {what}s, or "
+            "a function of points"
+        )
+    return numbers
 
 
 def numbered(

@@ -18,6 +18,8 @@ from .value import FrozenMapping, Value
 
 if TYPE_CHECKING:
     from .domain import Domain
+    from .domain_input import ByLabel
+    from .naming import Chosen
     from .validate import Validity
 
 Floats = NDArray[np.float64]
@@ -136,6 +138,33 @@ class Mesh(Value):
 
         pairs = () if self.domain is None else self.domain.periodic
         return {(p.first, p.second): periodic_vertices(self, p) for p in pairs}
+
+    def with_names(self, names: ByLabel[Chosen]) -> Mesh:
+        """The same mesh with names for constrained edges that are chosen by where they are.
+
+        Parameters
+        ----------
+        names : mapping of str or int to a choice
+            As in `Domain.with_names`; sides are the constrained edges, together with edges of the
+            border and between regions that the mesh does not list, which are listed then. If the
+            mesh has a domain, sides are those of the domain, which gets the names, too; numbers
+            are not taken then.
+
+        Raises
+        ------
+        DomainError
+            As `Domain.with_names`.
+
+        Examples
+        --------
+        >>> mesh = Mesh([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1, 2), (0, 2, 3)])
+        >>> mesh = mesh.with_names({"floor": lambda x: x[:, 1] < 1e-9})
+        >>> mesh.edges_named("floor").tolist()
+        [[0, 1]]
+        """
+        from .mesh_names import mesh_with_names
+
+        return mesh_with_names(self, names)
 
     def cleaned(self, merge: float | None = None) -> Mesh:
         """The same mesh without points in no triangle, and with each constrained edge listed once.

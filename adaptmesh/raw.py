@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from .domain import Domain
 from .domain_input import OR_REPAIR, ByLabel, is_level, labelled
 from .errors import DomainError, FormatError
+from .naming import Chosen
 from .value import Value
 
 Floats = NDArray[np.float64]
@@ -30,7 +31,7 @@ class Outline(Value):
     segments : (k, 2) array_like of int
     holes : sequence of (x, y), or "nesting", optional
     regions : mapping of str or int to (x, y) or several
-    names : mapping of str or int to sequence of int
+    names : mapping of str or int to sequence of int, or a choice
     tags, region_tags : mapping of str to int
     """
 
@@ -38,7 +39,7 @@ class Outline(Value):
     segments: ArrayLike
     holes: ArrayLike | str | None = None
     regions: ByLabel[ArrayLike] | None = None
-    names: ByLabel[Iterable[int]] | None = None
+    names: ByLabel[Chosen] | None = None
     tags: Mapping[str, int] | None = None
     region_tags: Mapping[str, int] | None = None
 

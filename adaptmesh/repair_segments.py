@@ -20,6 +20,7 @@ from .domain_input import (
 )
 from .errors import DomainError
 from .inside_lines import Lines
+from .naming import split_names
 from .raw import Outline
 
 Floats = NDArray[np.float64]
@@ -33,7 +34,8 @@ def repaired_domain_of_segments(
     """A domain of points and segments, and what had to be done for it; see `adaptmesh.repair`."""
     points = checked_points(outline.points, "point")
     segments = checked_pairs(outline.segments, len(points)).astype(np.int64)
-    names, tags32 = checked_names(outline.names, len(segments), given=outline.tags)
+    given, selectors = split_names(outline.names)
+    names, tags32 = checked_names(given, len(segments), given=outline.tags)
     tags = tags32.astype(np.int64)
     inside = Inside.checked(outline.holes, outline.regions, outline.region_tags)
     log = _segments_without_length(points, segments)
@@ -61,6 +63,7 @@ def repaired_domain_of_segments(
     if log:
         _check_seeds(inside, noded.points[edges], max(tolerance, drift))
     domain = _domain(noded, edges[kept], edge_tags[kept], lone, outline, names)
+    domain = domain.with_names(selectors) if selectors else domain
     return domain, Repairs(tuple(log), tolerance, drift)
 
 
