@@ -5,12 +5,13 @@ from __future__ import annotations
 import copy
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .cubic_pieces import CubicPieces, cubic_pieces
 from .curved import Curved, skeleton_of
 from .curves import Curve
 from .domain_faults import fault_text, segment_text
@@ -39,6 +40,19 @@ if TYPE_CHECKING:
     from .straight_sides import CornersFound
 
 SMALLEST_TOLERANCE = 1e-10  # of `Domain.outline`, as a share of the extent
+
+
+class Sides(NamedTuple):
+    """Some of the segments of a domain, by number, with the curves that they are chords of."""
+
+    domain: Domain
+    segments: Ints
+
+    def cubic_pieces(self) -> CubicPieces:
+        """The sides as straight pieces and short cubics."""
+        chosen = np.zeros(len(self.domain.segments), bool)
+        chosen[self.segments] = True
+        return cubic_pieces(self.domain, chosen)
 
 
 class Domain(Value):
@@ -519,8 +533,7 @@ class Domain(Value):
     def outline(self, tolerance: float, *, names: Iterable[str] | None = None) -> Floats:
         """All boundaries and internal lines as straight segments, curves to a tolerance.
 
-        For what measures distances from them, `metrics.Geometry` and all that takes one: a layer on
-        a curve wants segments that are off it by much less than the layer is thick.
+        For other programs; what measures distances here takes the curves themselves, see `sides`.
 
         Parameters
         ----------
@@ -560,6 +573,38 @@ class Domain(Value):
         run, u = run[mine], u[mine]
         ends = points_on(self.curved.runs, np.repeat(run, 2), u.ravel()).reshape(-1, 2, 2)
         return np.concatenate([straight, ends])
+
+    def sides(self, *names: str) -> Sides:
+        """The boundaries and lines of these names, curves as they are; all if none is given.
+
+        For what measures distances from them: `metrics.Geometry`, `metrics.Distance`,
+        `metrics.BoundaryLayer` and all else that takes a geometry.
+
+        Raises
+        ------
+        DomainError
+            A name is not known.
+
+        Examples
+        --------
+        >>> import metrics
+        >>> from adaptmesh.curves import Circle
+        >>> ring = Domain.from_curves([Circle((0, 0), 2), Circle((0, 0), 1)], names={"hole": [1]})
+        >>> d = metrics.Geometry(ring.sides("hole")).distances([(1.5, 0.0), (0.6, 0.8)])
+        >>> [round(float(x), 9) for x in d]
+        [0.5, 0.0]
+        """
+        tags = [self.tag_named(name) for name in names]
+        chosen = np.isin(self.segment_tags, tags) if names else np.ones(len(self.segments), bool)
+        return Sides(self, np.flatnonzero(chosen).astype(np.int32))
+
+    def cubic_pieces(self) -> CubicPieces:
+        """All sides as straight pieces and short cubics, see `sides`."""
+        return self._all_pieces
+
+    @cached_property
+    def _all_pieces(self) -> CubicPieces:
+        return cubic_pieces(self, np.ones(len(self.segments), bool))
 
     def __repr__(self) -> str:
         names = ", ".join([*self.names, *self.region_names])

@@ -84,6 +84,10 @@ class Run(Value):
         """Points (n, 2) at u (n,) of the curves as they are, which joining may have left apart."""
         return self._of_parts(Curve.point, part, u)
 
+    def derivative_of_part(self, part: Index, u: Floats) -> Floats:
+        """Derivatives by u (n, 2) at u (n,) of these parts, up to and including their ends."""
+        return self._of_parts(Curve.derivative, part, u)
+
     def _parts_at(self, u: Floats) -> Index:
         return np.clip(u.astype(np.intp), 0, len(self.parts) - 1)
 
@@ -104,6 +108,16 @@ def points_on(runs: Sequence[Run], run: Index, u: Floats) -> Floats:
 def derivatives_on(runs: Sequence[Run], run: Index, u: Floats) -> Floats:
     """Derivatives (k, 2) at the parameters u (k,) of these runs (k,)."""
     return _each(Run.derivative, runs, run, u)
+
+
+def derivatives_of_parts(runs: Sequence[Run], run: Index, part: Index, u: Floats) -> Floats:
+    """Derivatives (k, 2) of these parts of runs (k,) at u (k,)."""
+    out = np.empty((len(u), 2))
+    order = np.argsort(run, kind="stable")
+    for mine in np.split(order, np.flatnonzero(np.diff(run[order])) + 1):
+        r = int(run[mine[0]])
+        out[mine] = runs[r].derivative_of_part(part[mine], u[mine])
+    return out
 
 
 def _each(

@@ -101,6 +101,10 @@ class Background(ControlSpace):
             raise MetricError(f"{type(mesh).__name__} has neither triangles nor triangle cells")
         return cls(points, triangles, values, outside)
 
+    def allow_beyond(self, distance: float) -> None:
+        """Take points no farther outside than this for points on the border, with any `outside`."""
+        self._border = max(self._border, distance)
+
     def evaluate(self, points: ArrayLike, hints: ArrayLike | None = None) -> tuple[Floats, Ints]:
         """The metric at points, and the triangle that each was found in.
 

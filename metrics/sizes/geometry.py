@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _core
 from ..arrays import Floats, Ints, as_points
 from ..errors import MetricError
-from .shapes import Part, parts_of
+from .cubics import Cubics
+from .shapes import Part, Pieces, parts_of
 
 __all__ = ["Geometry", "Nearest", "as_geometry"]
 
@@ -32,7 +33,7 @@ class Nearest(NamedTuple):
     segments : (n,) array of int32
         Rows of `Geometry.segments` that they are on; of segments equally near, any.
     shares : (n,) array of float
-        How far along the segment, from 0 to 1.
+        How far along the segment, from 0 to 1; of a piece of a curve, its parameter.
     directions : (n, 2) array of float
         Unit vectors from the nearest points: across the segment, or, at a corner or an end, from
         there. Where the distance is 0, the left normal of the segment; at a corner, of the mean of
@@ -54,14 +55,17 @@ class Geometry:
     geometry : array_like, shapely geometry, or sequence of these
         A point (2,), a polyline (n, 2), or polylines (k, n, 2), of which segments are (k, 2, 2);
         GeoJSON as a dict, anything with a ``__geo_interface__``; anything with `points` (n, 2) and
-        `segments` (k, 2), such as an `adaptmesh.Domain`; or a list of these. Curves are given as
-        polylines. z is ignored.
+        `segments` (k, 2); or a list of these. z is ignored. An `adaptmesh.Domain`, or some of its
+        sides by name, ``domain.sides("wall")``, brings its curves: what is nearest is on the
+        curves themselves, to 1e-10 of the extent; only where two places are equally near, to 1e-6
+        of it, the farther of them may be taken. Other curves are given as polylines.
 
     Attributes
     ----------
     segments : (k, 2, 2) array of float
         Both ends of each; the same where a point is alone. A vertex that repeats the one before it
-        makes no segment, and a polyline that ends where it began, to rounding, is closed.
+        makes no segment, and a polyline that ends where it began, to rounding, is closed. Chords,
+        where they are short pieces of curves.
     is_polygonal : bool
         Whether it is made of polygons only, so that there is an inside.
 
@@ -96,42 +100,73 @@ class Geometry:
         self._build([Part(ring, True) for ring in rings])
         return self
 
-    def _build(self, parts: list[Part]) -> None:
-        pieces = [_segments_of(part) for part in parts if len(part.points)]
+    def _build(self, parts: list[Part | Pieces]) -> None:
+        pieces = [_pieces_of(part) for part in parts if len(part[0])]
         if not pieces:
             raise MetricError("the geometry is empty: there is nothing to measure distances from")
-        self.is_polygonal = all(part.is_ring for part in parts)
-        self.segments = np.ascontiguousarray(np.concatenate(pieces))
+        self.is_polygonal = all(isinstance(part, Part) and part.is_ring for part in parts)
+        self.segments = np.ascontiguousarray(np.concatenate([p.ends for p in pieces]))
         self.segments.flags.writeable = False
         largest = float(np.abs(self.segments).max())
         if largest > _LARGEST:
             raise MetricError(f"a coordinate of {largest:.3g} is too large: its square overflows")
         self._search = _core.Segments(self.segments.reshape(-1, 4))
         self._rounding = _ROUNDING * largest
-        self._tangents = _tangents(self.segments)
-        self._end_tangents = _end_tangents(self._tangents, self.vertices()[1])
+        chords = np.repeat(np.diff(self.segments, axis=1), 2, axis=1)
+        self._derivatives: Floats | None = None
+        self._cubics: Cubics | None = None
+        if any(p.derivatives is not None for p in pieces):
+            first = np.cumsum([0, *(len(p.ends) for p in pieces)])
+            for piece, i, j in zip(pieces, first[:-1].tolist(), first[1:].tolist(), strict=True):
+                if piece.derivatives is not None:
+                    chords[i:j] = piece.derivatives
+            cubics = Cubics(self.segments, chords)
+            if cubics.is_curved.any():
+                self._derivatives, self._cubics = chords, cubics
+        tangents = _units(chords.reshape(-1, 2)).reshape(-1, 2, 2)
+        self._tangents = tangents[:, 0]
+        self._end_tangents = _end_tangents(tangents, self.vertices()[1])
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"segments": self.segments, "is_polygonal": self.is_polygonal}
+        return {
+            "segments": self.segments,
+            "is_polygonal": self.is_polygonal,
+            "derivatives": self._derivatives,
+        }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self._build([Part(segment) for segment in state["segments"]])
+        self._build([Pieces(state["segments"], state["derivatives"])])
         self.is_polygonal = state["is_polygonal"]
 
     def nearest(self, points: ArrayLike) -> Nearest:
         """What is nearest to points (n, 2)."""
         where = as_points(points)
-        segments, shares, feet = self._search.nearest(where)
+        segments, shares, feet, tangents = self._feet(where)
         offsets = where - feet
         distances = np.hypot(offsets[:, 0], offsets[:, 1])
-        directions = self._directions(offsets, distances, segments, shares)
+        directions = self._directions(offsets, distances, segments, shares, tangents)
         return Nearest(distances, feet, segments, shares, directions)
 
     def distances(self, points: ArrayLike) -> Floats:
         """Distances of points (n, 2), (n,), not negative."""
         where = as_points(points)
-        offsets = where - self._search.nearest(where)[2]
+        offsets = where - self._feet(where)[2]
         return np.hypot(offsets[:, 0], offsets[:, 1])
+
+    def _feet(self, points: Floats) -> tuple[Ints, Floats, Floats, Floats]:
+        """Segments, places on them, the nearest points there and unit tangents."""
+        segments, shares, feet = self._search.nearest(points)
+        if self._cubics is None:
+            return segments, shares, feet, self._tangents[segments]
+        return self._cubics.project(points, segments, shares)
+
+    def sides_of(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Whether points (n, 2) are on the left of what is nearest to them, (n,)."""
+        where = as_points(points)
+        _, _, feet, along = self._feet(where)
+        off = where - feet
+        out: NDArray[np.bool_] = along[:, 0] * off[:, 1] > along[:, 1] * off[:, 0]
+        return out
 
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether points (n, 2) are inside, (n,); what is in an even number of rings is outside.
@@ -155,7 +190,12 @@ class Geometry:
         return np.where(self.contains(where), -distances, distances)
 
     def _directions(
-        self, offsets: Floats, distances: Floats, segments: Ints, shares: Floats
+        self,
+        offsets: Floats,
+        distances: Floats,
+        segments: Ints,
+        shares: Floats,
+        tangents: Floats,
     ) -> Floats:
         """Unit vectors from the nearest points, never made of rounding errors.
 
@@ -164,7 +204,7 @@ class Geometry:
         """
         at_end = (shares == 0) | (shares == 1)
         ends = self._end_tangents[segments, (shares == 1).astype(int)]
-        along = np.where(at_end[:, None], ends, self._tangents[segments])
+        along = np.where(at_end[:, None], ends, tangents)
         left = np.stack([-along[:, 1], along[:, 0]], axis=1)
         out = np.where((offsets * left).sum(axis=1, keepdims=True) < 0, -left, left)
         beyond = at_end & (distances > self._rounding)
@@ -209,25 +249,27 @@ def _segments_of(part: Part) -> Floats:
     return kept if len(kept) else np.stack([p[:1], p[:1]], axis=1)
 
 
-def _tangents(segments: Floats) -> Floats:
-    """Unit vectors along segments (k, 2, 2), (k, 2); (0, 0) for points."""
-    along = segments[:, 1] - segments[:, 0]
-    lengths = np.hypot(along[:, 0], along[:, 1])[:, None]
-    return np.divide(along, lengths, out=np.zeros_like(along), where=lengths > 0)
+def _pieces_of(part: Part | Pieces) -> Pieces:
+    return part if isinstance(part, Pieces) else Pieces(_segments_of(part))
+
+
+def _units(vectors: Floats) -> Floats:
+    """Unit vectors along vectors (k, 2); (0, 0) for those without a length."""
+    lengths = np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
 
 
 def _end_tangents(tangents: Floats, ends: Ints) -> Floats:
-    """Unit vectors along the curve at both ends of each segment, (k, 2, 2).
+    """Unit vectors along the curve at both ends of each segment, (k, 2, 2), from its own there.
 
     The mean direction of all segments that meet there, whichever way they run: the principal axis
     of the sum of t t'. A direction without orientation is a point of the circle at twice its angle,
     z = (tx + i ty)^2, and there the mean is a sum. Where there is no mean, as at a right angle, the
     segment's own.
     """
-    doubled = np.repeat((tangents[:, 0] + 1j * tangents[:, 1]) ** 2, 2)
+    doubled = ((tangents[..., 0] + 1j * tangents[..., 1]) ** 2).ravel()
     sums = np.bincount(ends.ravel(), doubled.real) + 1j * np.bincount(ends.ravel(), doubled.imag)
     mean = sums[ends]
     clear = np.abs(mean) > 1e-6
     unit = np.sqrt(np.where(clear, mean / np.where(clear, np.abs(mean), 1), 1))
-    own = np.broadcast_to(tangents[:, None], (*ends.shape, 2))
-    return np.where(clear[..., None], np.stack([unit.real, unit.imag], axis=2), own)
+    return np.where(clear[..., None], np.stack([unit.real, unit.imag], axis=2), tangents)

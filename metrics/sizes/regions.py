@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,7 +12,6 @@ from ..arrays import Floats, Ints, as_points, as_triangles
 from ..background import Background
 from ..control import ControlSpace
 from ..errors import MetricError
-from ..measure import mesh_edges
 from .geometry import Geometry
 from .given import positive
 
@@ -23,7 +22,7 @@ _ON_INTERFACE = 1e-9
 
 
 class RegionSizes(ControlSpace):
-    """One size for each region, the smaller one on the interface of two.
+    """One size for each region, the smaller one on the interface of two, be it straight or curved.
 
     Parameters
     ----------
@@ -56,6 +55,9 @@ class RegionSizes(ControlSpace):
         default: float | None = None,
         outside: Literal["clamp", "error"] = "clamp",
     ) -> None:
+        domain: Any = getattr(mesh, "domain", None)
+        if hasattr(domain, "cubic_pieces") and dict(domain.region_names) == dict(mesh.region_names):
+            mesh = domain  # its sides are the curves themselves
         points = as_points(mesh.points)
         triangles = as_triangles(mesh.triangles, len(points))
         regions = _regions_of(mesh, len(triangles))
@@ -63,14 +65,16 @@ class RegionSizes(ControlSpace):
         of_triangles = _sizes_of(regions, dict(mesh.region_names), self.sizes, default)
         #: Finds the triangle of a point; it carries no sizes.
         self._finder = Background(points, triangles, np.ones(len(points)), outside)
+        if hasattr(mesh, "cubic_pieces"):  # between chords and curves is no outside
+            self._finder.allow_beyond(float(mesh.cubic_pieces().heights.max(initial=0.0)))
         self._of_triangles = of_triangles
-        self._interfaces = _Interfaces.of(points, triangles, of_triangles)
+        self._interfaces = _Interfaces.of(mesh, points, triangles, of_triangles)
 
     def values(self, points: Floats) -> ArrayLike:
         _, triangles = self._finder.evaluate(points)
         found = self._of_triangles[triangles]
         if self._interfaces is not None:
-            found = np.minimum(found, self._interfaces.sizes(points))
+            found = self._interfaces.sizes(points, found)
         return found
 
     def __repr__(self) -> str:
@@ -78,38 +82,107 @@ class RegionSizes(ControlSpace):
 
 
 class _Interfaces:
-    """The edges between triangles of different sizes."""
+    r"""What lies between triangles of different sizes: edges, or the curves they are chords of.
 
-    def __init__(self, segments: Floats, smaller: Floats) -> None:
-        self.geometry = Geometry(segments)
-        self.margin = _ON_INTERFACE * float(np.ptp(segments.reshape(-1, 2), axis=0).max())
-        self.smaller = smaller
+    ::
+
+          ___---___         Triangles end at the chord: what is between it and the curve has the
+        /           \       size of the other side. It is nearest to this piece of the curve, and
+       a-------------b      no farther from it than the chord is.
+    """
+
+    def __init__(self, pieces: Any, left: Floats, right: Floats) -> None:
+        #: The pieces, the sizes on both sides of each, and how far each is off its chord.
+        self.geometry = Geometry(pieces)
+        self.left, self.right, self.heights = left, right, pieces.heights
+        self.margin = _ON_INTERFACE * float(np.ptp(pieces.ends.reshape(-1, 2), axis=0).max())
+        self.smaller = np.minimum(left, right)
         _, self.ends = self.geometry.vertices()
         #: At a vertex several interfaces may meet.
         self.at_vertices = np.full(int(self.ends.max()) + 1, np.inf)
-        np.minimum.at(self.at_vertices, self.ends.ravel(), np.repeat(smaller, 2))
+        np.minimum.at(self.at_vertices, self.ends.ravel(), np.repeat(self.smaller, 2))
 
     @classmethod
-    def of(cls, points: Floats, triangles: Ints, sizes: Floats) -> _Interfaces | None:
+    def of(cls, mesh: Any, points: Floats, triangles: Ints, sizes: Floats) -> _Interfaces | None:
         """Those of a mesh; None if there are none."""
-        edges, sides = mesh_edges(triangles)
-        low, high = np.full(len(edges), np.inf), np.zeros(len(edges))
-        np.minimum.at(low, sides, sizes[:, None])
-        np.maximum.at(high, sides, sizes[:, None])
-        differ = low < high
-        return cls(points[edges[differ]], low[differ]) if differ.any() else None
+        edges, left, right = _edges_with_sizes(triangles, sizes, len(points))
+        differ = (left != right) & ~np.isnan(left + right)
+        if not differ.any():
+            return None
+        edges, left, right = edges[differ], left[differ], right[differ]
+        pieces = _straight(points[edges])
+        if hasattr(mesh, "cubic_pieces"):
+            pieces, edge = _on_curves(mesh, points, edges)
+            left, right = left[edge], right[edge]
+        return cls(pieces, left, right)
 
-    def sizes(self, points: Floats) -> Floats:
-        """The smaller size of both sides for points on an interface, infinite elsewhere."""
+    def sizes(self, points: Floats, found: Floats) -> Floats:
+        """The sizes at points, from those of the triangles that they are in."""
         near = self.geometry.nearest(points)
-        lengths = np.hypot(*(self.geometry.segments[:, 1] - self.geometry.segments[:, 0]).T)
-        travelled = near.shares * lengths[near.segments]
-        out = self.smaller[near.segments]
-        for end, gap in enumerate((travelled, lengths[near.segments] - travelled)):
+        piece = near.segments
+        beside = np.where(self.geometry.sides_of(points), self.left[piece], self.right[piece])
+        out = np.where(near.distances <= self.heights[piece], beside, found)
+        smaller = self.smaller[piece]
+        span = np.diff(self.geometry.segments, axis=1)[piece, 0]
+        travelled = near.shares * np.hypot(*span.T)
+        for end, gap in enumerate((travelled, np.hypot(*span.T) - travelled)):
             at_end = gap <= self.margin
-            vertex = self.ends[near.segments[at_end], end]
-            out[at_end] = np.minimum(out[at_end], self.at_vertices[vertex])
-        return np.where(near.distances <= self.margin, out, np.inf)
+            vertex = self.ends[piece[at_end], end]
+            smaller[at_end] = np.minimum(smaller[at_end], self.at_vertices[vertex])
+        is_on = near.distances <= self.margin
+        out[is_on] = np.minimum(out, smaller)[is_on]
+        return out
+
+
+class _Pieces(NamedTuple):
+    """What `Geometry` takes from a domain of curves, and how far each is off its chord."""
+
+    ends: Floats
+    derivatives: Floats
+    heights: Floats
+
+    def cubic_pieces(self) -> _Pieces:
+        return self
+
+
+def _straight(ends: Floats) -> _Pieces:
+    return _Pieces(ends, np.repeat(np.diff(ends, axis=1), 2, axis=1), np.zeros(len(ends)))
+
+
+def _edges_with_sizes(triangles: Ints, sizes: Floats, n: int) -> tuple[Ints, Floats, Floats]:
+    """Edges (k, 2), and the sizes on the left and on the right of each; NaN outside."""
+    tail = triangles.astype(np.int64).T.ravel()
+    head = triangles[:, [1, 2, 0]].astype(np.int64).T.ravel()
+    keys, edge = np.unique(np.minimum(tail, head) * n + np.maximum(tail, head), return_inverse=True)
+    beside = np.full((2, len(keys)), np.nan)
+    beside[(tail > head).astype(int), edge.ravel()] = np.tile(sizes, 3)
+    return np.stack(np.divmod(keys, n), axis=1), beside[0], beside[1]
+
+
+def _on_curves(domain: Any, points: Floats, edges: Ints) -> tuple[_Pieces, Ints]:
+    """Edges (k, 2) with the curves of a domain in place of chords, and the edge of each piece."""
+    all_pieces = domain.cubic_pieces()
+    n = len(points)
+    ends = np.asarray(domain.segments, np.int64)
+    keys = np.minimum(*ends.T) * n + np.maximum(*ends.T)
+    wanted = edges[:, 0] * n + edges[:, 1]
+    order = np.argsort(wanted)
+    at = np.minimum(np.searchsorted(wanted, keys, sorter=order), len(wanted) - 1)
+    edge_of_segment = np.where(wanted[order[at]] == keys, order[at], -1)
+    edge = edge_of_segment[all_pieces.segments]
+    curved = np.flatnonzero((edge >= 0) & (all_pieces.heights > 0))
+    is_chord = np.isin(np.arange(len(edges)), edge[curved])
+    straight = _straight(points[edges[~is_chord]])
+    ends_, derivatives = all_pieces.ends[curved], all_pieces.derivatives[curved]
+    against = ends[all_pieces.segments[curved], 0] > ends[all_pieces.segments[curved], 1]
+    ends_[against] = ends_[against][:, ::-1]  # edges go from the lower number to the higher
+    derivatives[against] = -derivatives[against][:, ::-1]
+    pieces = _Pieces(
+        np.concatenate([straight.ends, ends_]),
+        np.concatenate([straight.derivatives, derivatives]),
+        np.concatenate([straight.heights, all_pieces.heights[curved]]),
+    )
+    return pieces, np.concatenate([np.flatnonzero(~is_chord), edge[curved]])
 
 
 def _regions_of(mesh: Any, count: int) -> Ints:

@@ -10,7 +10,7 @@ import numpy as np
 from ..arrays import Floats, as_indices, as_points
 from ..errors import MetricError
 
-__all__ = ["Part", "parts_of"]
+__all__ = ["Part", "Pieces", "parts_of"]
 
 
 class Part(NamedTuple):
@@ -20,7 +20,14 @@ class Part(NamedTuple):
     is_ring: bool = False
 
 
-def parts_of(geometry: Any) -> Iterator[Part]:
+class Pieces(NamedTuple):
+    """Segments (k, 2, 2), not joined; or cubics with these ends and derivatives (k, 2, 2) there."""
+
+    ends: Floats
+    derivatives: Floats | None = None
+
+
+def parts_of(geometry: Any) -> Iterator[Part | Pieces]:
     """The parts of anything that `Geometry` takes.
 
     Raises
@@ -32,15 +39,17 @@ def parts_of(geometry: Any) -> Iterator[Part]:
         yield from _of_geojson(geometry)
     elif hasattr(geometry, "__geo_interface__"):
         yield from _of_geojson(geometry.__geo_interface__)
+    elif hasattr(geometry, "cubic_pieces"):
+        pieces = geometry.cubic_pieces()
+        yield Pieces(pieces.ends, pieces.derivatives)
     elif hasattr(geometry, "points") and hasattr(geometry, "segments"):
         points = as_points(geometry.points)
-        ends = as_indices(geometry.segments, 2, len(points), "segment")
-        yield from map(Part, points[ends])
+        yield Pieces(points[as_indices(geometry.segments, 2, len(points), "segment")])
     else:
         yield from _of_arrays(geometry)
 
 
-def _of_arrays(geometry: Any) -> Iterator[Part]:
+def _of_arrays(geometry: Any) -> Iterator[Part | Pieces]:
     try:
         array = np.asarray(geometry)
         is_numeric = array.dtype.kind in "iuf"
@@ -54,6 +63,8 @@ def _of_arrays(geometry: Any) -> Iterator[Part]:
             )
         for item in geometry:
             yield from parts_of(item)
+    elif array.ndim == 3 and array.shape[1:] == (2, 2):
+        yield Pieces(as_points(array.reshape(-1, 2)).reshape(-1, 2, 2))
     elif array.ndim == 3 and array.shape[2] == 2:
         yield from (Part(as_points(polyline)) for polyline in array)
     elif array.ndim == 2:

@@ -29,9 +29,9 @@ class BoundaryLayer(ControlSpace):
     Parameters
     ----------
     wall : Geometry, or what it takes
-        Curves as polylines, polygons (their boundary, which has a layer on both sides), a shapely
-        geometry, or segments, as ``domain.points[domain.segments]`` or
-        ``mesh.points[mesh.edges_named("wall")]``; coordinates and sizes are in one unit of length.
+        Sides of an `adaptmesh.Domain` by name, ``domain.sides("wall")``, whose curves are taken as
+        they are; curves as polylines, polygons (their boundary, which has a layer on both sides), a
+        shapely geometry, or segments (k, 2, 2). Coordinates and sizes are in one unit of length.
     first_height : float
         The size across the wall, at the wall. The first row of triangles, if equilateral in the
         metric, is lower than that by sqrt(3)/2. See `metrics.first_height` for a given y+.
