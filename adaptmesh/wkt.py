@@ -13,11 +13,14 @@ from pathlib import Path
 import numpy as np
 
 from .errors import DomainError, FormatError
+from .io.bounded import MOST_NESTED
 from .io.files import read_text
+from .io.located import located
 from .raw import Shape
 
 _BLANKS = re.compile(r"\s*(?:SRID=\d+;\s*)?", re.IGNORECASE)
-_OPENING = re.compile(r"([a-z][a-z\s]*?)\s*(?:\(|\bEMPTY\b)", re.IGNORECASE)
+# POLYGON, perhaps with Z, M or ZM; words and not blanks are counted, so that it takes linear time
+_OPENING = re.compile(r"([a-z]+(?:\s+(?!EMPTY\b)[a-z]+)?)(?:\s*\(|\s+EMPTY\b)", re.IGNORECASE)
 _BRACKET = re.compile(r"[()]")
 
 
@@ -51,7 +54,8 @@ def _geometries(text: str, path: Path) -> Iterator[tuple[int, str]]:
             raise FormatError(
                 f"{path}, line {line}: POLYGON or the like was expected, not {found!r}"
             )
-        at = _closing(text, opening.end()) if opening[0].endswith("(") else opening.end()
+        with located(f"{path}, line {line}"):
+            at = _closing(text, opening.end()) if opening[0].endswith("(") else opening.end()
         if at < 0:
             raise FormatError(
                 f"{path}, line {line}: the brackets of this {opening[1]} are not closed: is the "
@@ -71,4 +75,6 @@ def _closing(text: str, at: int) -> int:
         depth += 1 if bracket[0] == "(" else -1
         if depth == 0:
             return bracket.end()
+        if depth > MOST_NESTED:  # shapely takes a frame of the stack for each
+            raise FormatError(f"brackets are nested more than {MOST_NESTED} levels deep")
     return -1

@@ -8,7 +8,7 @@ is what does not lie in a plane z = constant. Layers that are off or frozen coun
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +33,10 @@ PDFUNDERLAY DWFUNDERLAY DGNUNDERLAY OLE2FRAME ACAD_PROXY_ENTITY
 PASSED_OVER = frozenset(_ANNOTATION.split())
 """Kinds of entities that are no outlines."""
 
+MOST_COPIES = 100_000
+"""Entities and vertices that references to blocks may draw beyond those of the file itself."""
+_MOST_NESTED = 50
+
 
 def read_dxf(path: Path) -> Drawing:
     """The curves of the model space of a DXF file, each with the name of its layer."""
@@ -52,9 +56,76 @@ def _entities(ezdxf: Any, path: Path) -> Iterator[Any]:
         raise FormatError("does not end with EOF: it is cut short, or no DXF file")
     document = ezdxf.readfile(path)
     hidden = {layer.dxf.name for layer in document.layers if layer.is_off() or layer.is_frozen()}
-    for entity in ezdxf.disassemble.recursive_decompose(document.modelspace()):
-        if entity.dxftype() not in PASSED_OVER and entity.dxf.layer not in hidden:
+    _Blocks(document).refuse_many_copies()
+    for entity in _taken_apart(document.modelspace()):
+        if entity.dxf.layer not in hidden:
             yield entity
+
+
+def _taken_apart(entities: Iterable[Any]) -> Iterator[Any]:
+    """What entities draw, blocks taken apart and annotation left out."""
+    for entity in entities:
+        kind = entity.dxftype()
+        if kind == "INSERT":
+            several = entity.mcount > 1
+            yield from _taken_apart(entity.multi_insert() if several else entity.virtual_entities())
+        elif kind == "MLINE":
+            yield from _taken_apart(entity.virtual_entities())
+        elif kind not in PASSED_OVER:
+            yield entity
+
+
+class _Blocks:
+    """How much is drawn when references to blocks are taken apart."""
+
+    def __init__(self, document: Any) -> None:
+        self._document = document
+        self._weights: dict[str, int] = {}  # by block, of all that it draws
+
+    def refuse_many_copies(self) -> None:
+        """Raise if blocks of blocks of ... draw far more than the file holds."""
+        own = sum(map(_weight, self._document.entitydb.values()))
+        if self._weight(self._document.modelspace(), 0) > MOST_COPIES + own:
+            raise FormatError(
+                f"its blocks draw more than {MOST_COPIES} copies of what it holds: it is made to "
+                "fill the memory, or should be split"
+            )
+
+    def _weight(self, entities: Iterable[Any], depth: int) -> int:
+        total = 0
+        for entity in entities:
+            total += _weight(entity)
+            if entity.dxftype() == "INSERT":
+                total += self._of_insert(entity, depth + 1)
+        return total
+
+    def _of_insert(self, insert: Any, depth: int) -> int:
+        name = insert.dxf.name
+        if name not in self._weights:
+            with located(_words(insert)):
+                self._weights[name] = self._weight(self._block(name, depth), depth)
+        rows, columns = (insert.dxf.get(f"{of}_count", 1) for of in ("row", "column"))
+        return max(1, abs(int(rows * columns))) * (1 + self._weights[name])
+
+    def _block(self, name: str, depth: int) -> Any:
+        block = self._document.blocks.get(name)
+        if block is None:
+            raise FormatError(f"block {name!r} is not in the file")
+        if block.block.is_xref:
+            raise FormatError(f"block {name!r} is another file: bind it")
+        if depth > _MOST_NESTED:
+            raise FormatError(f"blocks nested more than {_MOST_NESTED} deep, or in themselves")
+        return block
+
+
+def _weight(entity: Any) -> int:
+    """One, or the number of vertices."""
+    kind = entity.dxftype()
+    if kind == "LWPOLYLINE":
+        return 1 + len(entity)
+    if kind == "POLYLINE":
+        return 1 + len(entity.vertices)
+    return 1 + len(entity.control_points) if kind == "SPLINE" else 1
 
 
 def _words(entity: Any) -> str:
@@ -173,7 +244,6 @@ _READERS = {
 def _import_ezdxf() -> Any:
     try:
         import ezdxf
-        import ezdxf.disassemble
     except ImportError:
         raise FormatError('DXF is read by ezdxf: pip install "adaptmesh-metric[files]"') from None
     return ezdxf

@@ -11,10 +11,11 @@ transformations.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from ..errors import FormatError
+from ..io.bounded import MOST_NESTED
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -26,7 +27,7 @@ _UNIT = "(?:[a-zA-Z]{1,4}|%)?"
 _COORDINATE = re.compile(_NUMBER + _GAP)
 _FLAG = re.compile("[01]" + _GAP)
 _ANGLE_OR_LENGTH = re.compile(_NUMBER + _UNIT + _GAP)
-_LENGTH = re.compile(rf"\s*(?:{_NUMBER}\s*{_UNIT}|auto)\s*")
+_LENGTH = re.compile(rf"{_NUMBER}(?:\s*(?:[a-zA-Z]{{1,4}}|%))?|auto")
 _FUNCTION = re.compile(r"(?:matrix|translate[XY]?|scale[XY]?|rotate|skew[XY]?)\s*\(([^()]*)\)")
 _COMMAND = re.compile(r"([MLHVCSQTAZ])([^MLHVCSQTAZ]*)", re.IGNORECASE)
 _ARGUMENTS = {
@@ -52,10 +53,18 @@ _SHAPES = {"circle", "ellipse", "line", "rect"}
 _NAMESPACE = "{http://www.w3.org/2000/svg}"
 _HREFS = ("href", "{http://www.w3.org/1999/xlink}href")
 
+_COLOURS = ("fill", "stroke", "color")
+_COLOUR = re.compile(r"\b(?:fill|stroke|color)\s*:([^;}]*)")
+_LONGEST_COLOUR = 200
+_LONGEST_SELECTOR = 1000
+MOST_COPIES = 100_000
+"""Elements, and numbers in their paths, that `<use>` may draw beyond those of the file itself."""
+
 
 def check_syntax(root: Element) -> None:
     """Raise for the first element that would not be drawn as its author meant."""
-    ids = {f"#{element.get('id')}" for element in root.iter()}
+    ids = {f"#{element.get('id')}": element for element in root.iter()}
+    _refuse_many_copies(root, ids)
     for element in root.iter():
         tag = str(element.tag).removeprefix(_NAMESPACE)
         if tag == "path":
@@ -64,11 +73,64 @@ def check_syntax(root: Element) -> None:
             _check(element, "points", lambda text: _are(text, (_COORDINATE,) * 2))
         elif tag in _SHAPES:
             for name in _LENGTHS:
-                _check(element, name, lambda text: bool(_LENGTH.fullmatch(text)))
+                _check(element, name, lambda text: bool(_LENGTH.fullmatch(text.strip())))
         elif tag == "use":
             for name in _HREFS:
                 _check(element, name, ids.__contains__)
+        elif tag == "style" and not is_stylesheet(element.text or ""):
+            raise FormatError("<style> is not a list of rules, selector { property: value; }")
         _check(element, "transform", _is_transform)
+        _check(element, "style", _are_colours_short)
+        for name in _COLOURS:
+            _check(element, name, lambda text: len(text) <= _LONGEST_COLOUR)
+
+
+def _refuse_many_copies(root: Element, ids: Mapping[str, Element]) -> None:
+    """Raise if uses of groups of uses, ... draw far more than the file holds."""
+    weights: dict[Element, int] = {}
+
+    def own(element: Element) -> int:
+        return 1 + (len(element.get("d", "")) + len(element.get("points", ""))) // 8
+
+    def weight(element: Element, depth: int) -> int:
+        if depth > MOST_NESTED:
+            raise FormatError(f"uses are nested more than {MOST_NESTED} deep, or in themselves")
+        if element not in weights:
+            parts = list(element)
+            if str(element.tag).removeprefix(_NAMESPACE) == "use":
+                parts += [ids[h] for h in map(element.get, _HREFS) if h is not None and h in ids]
+            total = own(element)
+            for part in parts:
+                total += weight(part, depth + 1)
+            weights[element] = total
+        return weights[element]
+
+    if weight(root, 0) > MOST_COPIES + sum(map(own, root.iter())):
+        raise FormatError(
+            f"its uses draw more than {MOST_COPIES} copies of what it holds: it is made to fill "
+            "the memory, or should be split"
+        )
+
+
+def is_stylesheet(text: str) -> bool:
+    """Whether it is rules, comments closed: svgelements' patterns take quadratic time else."""
+    at = text.find("/*")
+    while at >= 0:
+        end = text.find("*/", at + 2)
+        if end < 0:
+            return False
+        at = text.find("/*", end + 2)
+    *rules, rest = text.split("}")
+    selectors = [rule.partition("{")[0] for rule in rules]
+    return (
+        "{" not in rest
+        and all(len(selector) <= _LONGEST_SELECTOR for selector in (*selectors, rest))
+        and _are_colours_short(text)
+    )
+
+
+def _are_colours_short(text: str) -> bool:
+    return all(len(match[1]) <= _LONGEST_COLOUR for match in _COLOUR.finditer(text))
 
 
 def _check(element: Element, name: str, is_good: Callable[[str], bool]) -> None:

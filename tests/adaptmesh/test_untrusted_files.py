@@ -418,3 +418,163 @@ def test_xdmf_of_wrong_dimensions(dimensions, numbers, file):
     item = f'<DataItem Format="XML" Dimensions="{dimensions}">{numbers}</DataItem>'
     grid = f'<Grid Name="m"><Geometry>{item}</Geometry></Grid>'
     refused(am.read, file("a.xdmf", f"<Xdmf><Domain>{grid}</Domain></Xdmf>"), "Geometry")
+
+
+# ------------------------------------------------------------------------------------------- WKT
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a" + " " * 500_000,
+        "a b" + " " * 500_000,
+        "POLYGON" + "(" * 500_000,
+        "GEOMETRYCOLLECTION(" * 50_000 + "POINT(0 0)" + ")" * 50_000,
+        "SRID=" + "1" * 500_000,
+        "POLYGON((" + "1" * 500_000 + " 0, 1 0, 1 1))",
+        "POLYGON EMPTY " * 20_000 + "!",
+    ],
+)
+def test_wkt(file, text):
+    refused(am.read_domain, file("a.wkt", text))
+
+
+@pytest.mark.parametrize("kind", ["POLYGON", "POLYGON Z", "polygon\n z", "POLYGONZ"])
+def test_wkt_words(file, kind):
+    assert am.read_domain(file("a.wkt", f"{kind} ((0 0 1,1 0 1,1 1 1,0 0 1))")).area == 0.5
+
+
+# ------------------------------------------------------------------------------------------- SVG
+
+
+def svg(body):
+    return f'<svg xmlns="http://www.w3.org/2000/svg">{body}</svg>'
+
+
+def doubled(count):
+    groups = (f'<g id="a{i + 1}"><use href="#a{i}"/><use href="#a{i}"/></g>' for i in range(count))
+    return '<circle id="a0" r="1"/>' + "".join(groups)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<g id="a"><use href="#a"/><circle r="1"/></g>',
+        doubled(40),
+        doubled(150),
+        '<g id="a">' + '<circle r="1"/>' * 2000 + "</g>" + '<use href="#a"/>' * 2000,
+        '<path id="a" d="M0 0' + "L1 1" * 50_000 + '"/>' + '<use href="#a"/>' * 2000,
+        "".join(f'<use id="a{i}" href="#a{i + 1}"/>' for i in range(5000)),
+        "<style>" + "a," * 100_000 + "</style>",
+        "<style>" + "a{" * 100_000 + "</style>",
+        "<style>" + "/*" * 100_000 + "</style>",
+        "<style>a{fill:rgb(" + "1" * 20_000 + "}</style>",
+        '<circle r="1" fill="rgb(' + "1" * 20_000 + '"/>',
+        '<circle r="1" style="fill:rgb(' + "1" * 20_000 + '"/>',
+        '<circle r="1' + " " * 500_000 + '!"/>',
+        '<circle r="1" transform="' + "matrix(" * 50_000 + '"/>',
+    ],
+)
+def test_svg(file, body):
+    pytest.importorskip("svgelements")
+    refused(am.read_domain, file("a.svg", svg(body)))
+
+
+def test_svg_images_are_not_opened(file, tmp_path):
+    pytest.importorskip("svgelements")
+    (tmp_path / "secret.svg").write_text(svg('<circle r="5"/>'))
+    image = '<image href="secret.svg" width="1" height="1"/><circle r="1"/>'
+    assert am.read_domain(file("a.svg", svg(image))).area < 4
+    refused(am.read_domain, file("b.svg", svg('<use href="secret.svg#a"/>')), "cannot be drawn")
+
+
+def test_svg_uses_and_styles_in_good_faith(file):
+    pytest.importorskip("svgelements")
+    style = "<style>/* { */ .a, .b { fill: none } circle{stroke:rgb(1,2,3)} </style>"
+    uses = "".join(f'<use href="#a" x="{3 * k}"/>' for k in range(20))
+    shown = f'{style}<defs><circle id="a" r="1" style="fill:#fff"/></defs>{uses}'
+    assert am.read_domain(file("a.svg", svg(shown))).area == pytest.approx(21 * np.pi, rel=0.1)
+
+
+# ------------------------------------------------------------------------------------------- DXF
+
+
+@pytest.fixture
+def dxf(tmp_path):
+    ezdxf = pytest.importorskip("ezdxf")
+
+    def write(fill):
+        document = ezdxf.new("R2000")
+        fill(document, document.modelspace())
+        path = tmp_path / "a.dxf"
+        document.saveas(path)
+        return path
+
+    return write
+
+
+def doubled_blocks(document, space):
+    document.blocks.new("b0").add_circle((0, 0), 1)
+    for k in range(40):
+        block = document.blocks.new(f"b{k + 1}")
+        block.add_blockref(f"b{k}", (0, 0))
+        block.add_blockref(f"b{k}", (5, 0))
+    space.add_blockref("b40", (0, 0))
+
+
+def doubled_empty_blocks(document, space):
+    doubled_blocks(document, space)
+    document.blocks.get("b0").delete_all_entities()
+
+
+def array_of_blocks(document, space, spacing=1.0):
+    document.blocks.new("b").add_circle((0, 0), 0.1)
+    counts = {"row_count": 30_000, "column_count": 30_000}
+    spacings = {"row_spacing": spacing, "column_spacing": spacing}
+    space.add_blockref("b", (0, 0), dxfattribs=counts | spacings)
+
+
+def long_polyline_again_and_again(document, space):
+    document.blocks.new("b").add_lwpolyline([(x, x % 2) for x in range(2000)])
+    for x in range(2000):
+        space.add_blockref("b", (x, 0))
+
+
+def block_in_itself(document, space):
+    block = document.blocks.new("b")
+    block.add_circle((0, 0), 1)
+    block.add_blockref("b", (5, 0))
+    space.add_blockref("b", (0, 0))
+
+
+def another_file(document, space):
+    document.add_xref_def("secret.dxf", "b")
+    space.add_blockref("b", (0, 0))
+
+
+@pytest.mark.parametrize(
+    ("fill", "why"),
+    [
+        (doubled_blocks, "copies"),
+        (doubled_empty_blocks, "copies"),
+        (array_of_blocks, "copies"),
+        (lambda document, space: array_of_blocks(document, space, 0), "copies"),
+        (long_polyline_again_and_again, "copies"),
+        (block_in_itself, "in themselves"),
+        (another_file, "is another file"),
+        (lambda document, space: space.add_blockref("nowhere", (0, 0)), "is not in the file"),
+    ],
+)
+def test_dxf(dxf, fill, why):
+    refused(am.read_domain, dxf(fill), why)
+
+
+def test_dxf_blocks_in_good_faith(dxf):
+    def fill(document, space):
+        document.blocks.new("b").add_circle((0, 0), 1)
+        document.blocks.new("c").add_blockref("b", (0, 0))
+        attributes = {"row_count": 3, "column_count": 4, "row_spacing": 5, "column_spacing": 5}
+        space.add_blockref("c", (0, 0), dxfattribs=attributes)
+        space.add_linear_dim((0, 20), (0, 0), (1, 0)).render()  # annotation
+
+    assert am.read_domain(dxf(fill)).area == pytest.approx(12 * np.pi, rel=0.1)
