@@ -34,7 +34,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import FormatError
-from .bounded import read_json
+from .bounded import Allowance, read_json, whole_number
 from .content import Array, Content, refuse_cells
 from .files import text_of
 from .gmsh_groups import in_several, name_several
@@ -76,6 +76,7 @@ class Elements:
 class Sections:
     """What the sections of a `.msh` file say, before they are brought together."""
 
+    allowance: Allowance
     node_tags: Array = field(default_factory=lambda: np.empty(0, np.int64))
     points: Array = field(default_factory=lambda: np.empty((0, 3)))
     elements: dict[int, Elements] = field(default_factory=dict)
@@ -129,7 +130,7 @@ def decode(data: bytes) -> Content:
     elif not sections or sections[0][0] != "NOD":
         raise FormatError("does not start with $MeshFormat: it is damaged or not a Gmsh file")
     readers = _readers(version)
-    out = Sections()
+    out = Sections(Allowance(len(data)))
     for name, body in sections:
         with located(f"${name}"):
             if name in readers:
@@ -199,7 +200,8 @@ def _version(body: bytes) -> tuple[str, str | None]:
 
 def _read_names(body: bytes, out: Sections) -> None:
     lines = [line for line in text_of(body).splitlines() if line.strip()]
-    rows = [re.match(r'\s*(?:(\d+)\s+)?(-?\d+)\s+"(.*)"\s*$', line) for line in lines[1:]]
+    pattern = re.compile(r'\s*(?:([0-9]{1,9})\s+)?(-?[0-9]{1,18})\s+"(.*)"\s*$')
+    rows = [pattern.match(line) for line in lines[1:]]
     if not lines or lines[0].strip() != str(len(rows)):
         raise FormatError(f"its first line is not the number of names that follow, {len(rows)}")
     for row, line in zip(rows, lines[1:], strict=True):
@@ -226,33 +228,27 @@ def _read_view(body: bytes, order: str | None, views: dict[str, tuple[Array, Arr
 
     Of several time steps of one name the last in the file is kept.
     """
-    header: list[list[bytes]] = []
-    for _ in range(3):
-        line, _, body = body.partition(b"\n")
-        tags: list[bytes] = []
-        for _ in range(_integer(line)):
-            line, newline, body = body.partition(b"\n")
-            if not newline:
-                raise FormatError("cut short within its header")
-            tags.append(line)
-        header.append(tags)
-    strings, _, integers = header
+    at = 0
+
+    def line() -> bytes:
+        nonlocal at
+        start, stop = at, body.find(b"\n", at)
+        if stop < 0:
+            raise FormatError("cut short within its header")
+        at = stop + 1
+        return body[start:stop]
+
+    strings, _, integers = [[line() for _ in range(whole_number(line()))] for _ in range(3)]
     if not strings or len(integers) < 3:
         raise FormatError("its header lacks the name, the components or the count of values")
-    columns, count = _integer(integers[1]), _integer(integers[2])
+    columns, count = whole_number(integers[1]), whole_number(integers[2])
     if columns < 1:
         raise FormatError("a view with no components")
-    cursor = _cursor(body, order)
+    cursor = _cursor(body[at:], order)
     tags_of_rows, values = cursor.rows(count, ("i4", 1), ("f8", columns))
     if cursor.left_over():
         raise FormatError("holds more than its counts say: the file is damaged")
     views[text_of(strings[0]).strip().strip('"')] = tags_of_rows[:, 0], values
-
-
-def _integer(word: bytes) -> int:
-    if not re.fullmatch(rb"\s*\d{1,18}\s*", word):
-        raise FormatError(f"a count was expected, found {word[:24]!r}")
-    return int(word)
 
 
 def _together(file: Sections) -> Content:
@@ -264,6 +260,8 @@ def _together(file: Sections) -> Content:
     of_shape = file.ours.get("shapes", {})
 
     def field_of(name: str, view: tuple[Array, Array], tags: Array) -> Array:
+        # A view may have one row of many columns, and the field has a row for each node.
+        file.allowance.take(len(tags) * view[1].shape[1], 8)
         values = _field(name, view, tags, plane)
         return shaped(values, of_shape.get(name)) if isinstance(of_shape, dict) else values
 

@@ -50,7 +50,8 @@ _OTHER_CELLS = {
 }  # fmt: skip
 _REQUIRED = ("RequiredVertices", "RequiredEdges", "Corners")
 _NAME_BYTES = 256
-_COMMENT = re.compile(r'#[ \t]*adaptmesh (edge|region) (-?[0-9]{1,10}) (".*")[ \t]*$', re.MULTILINE)
+_OURS = re.compile(r"#[ \t]*adaptmesh (edge|region)\b")
+_COMMENT = re.compile(r'#[ \t]*adaptmesh (edge|region) (-?[0-9]{1,10}) (".*")[ \t]*')
 
 
 # ---------------------------------------------------------------------------------------- reading
@@ -114,8 +115,13 @@ def _of_any_order(
 
 def _commented_names(text: str) -> dict[str, dict[str, int]]:
     names: dict[str, dict[str, int]] = {"edge": {}, "region": {}}
-    for kind, tag, quoted in _COMMENT.findall(text):
-        names[kind][_unquoted(quoted)] = int(tag)
+    for line in text.split("\n") if "adaptmesh" in text else ():
+        comment = line[line.find("#") :]
+        if _OURS.match(comment):
+            said = _COMMENT.fullmatch(comment)
+            if said is None:
+                raise FormatError(f"the name in the comment {comment[:80]!r} is damaged")
+            names[said[1]][_unquoted(said[3])] = int(said[2])
     return names
 
 

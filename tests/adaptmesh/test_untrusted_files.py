@@ -578,3 +578,47 @@ def test_dxf_blocks_in_good_faith(dxf):
         space.add_linear_dim((0, 20), (0, 0), (1, 0)).render()  # annotation
 
     assert am.read_domain(dxf(fill)).area == pytest.approx(12 * np.pi, rel=0.1)
+
+
+# ----------------------------------------------------------------------------------- Gmsh, Medit
+
+
+@pytest.mark.parametrize(
+    "section",
+    [
+        "$NodeData\n900000\n" + "\n" * 800_000 + "$EndNodeData\n",
+        f'$PhysicalNames\n1\n{LONG} 1 "a"\n$EndPhysicalNames\n',
+        f'$PhysicalNames\n1\n1 {LONG} "a"\n$EndPhysicalNames\n',
+        "$PhysicalNames\n1\n" + " " * 800_000 + "\n$EndPhysicalNames\n",
+        '$PhysicalNames\n1\n1 1 "' + '" ' * 400_000 + "x\n$EndPhysicalNames\n",
+        "$Adaptmesh\n" + "[" * 100_000 + "\n$EndAdaptmesh\n",
+        f'$Adaptmesh\n{{"edges": {{"a": {LONG}}}}}\n$EndAdaptmesh\n',
+        f"$Nodes\n{LONG}\n$EndNodes\n",
+        "$" + "a" * 800_000,
+    ],
+)
+def test_gmsh(file, section):
+    refused(am.read, file("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + section))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '# adaptmesh edge 1 "' * 40_000 + "x",
+        '# adaptmesh edge 1 "a',
+        "# adaptmesh region 1",
+        f'# adaptmesh region {LONG} "a"',
+        '"' * 400_001,
+        "Vertices\n" + LONG,
+    ],
+)
+def test_medit(file, text):
+    refused(am.read, file("a.mesh", f"MeshVersionFormatted 2\nDimension 2\n{text}\nEnd\n"))
+
+
+def test_a_view_of_few_rows_is_not_spread_over_many_nodes(file):
+    nodes = "".join(f"{i + 1} {i % 100} {i // 100} 0\n" for i in range(5000))
+    view = '$NodeData\n1\n"u"\n1\n0\n3\n0\n9000\n1\n1' + " 0" * 9000 + "\n$EndNodeData\n"
+    mesh = f"$Nodes\n5000\n{nodes}$EndNodes\n$Elements\n1\n1 2 0 1 2 101\n$EndElements\n"
+    path = file("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + mesh + view)
+    refused(am.io.read_fields, path, "MiB")
