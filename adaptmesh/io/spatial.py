@@ -9,6 +9,9 @@ import numpy as np
 from .content import Array, Content
 
 
+_MOST_DIMENSIONS = 8
+
+
 def spatial(values: Array) -> Array:
     """Vectors (n, 2) with a third component of zero; anything else as it is."""
     if values.ndim != 2 or values.shape[1] != 2:
@@ -33,9 +36,11 @@ def flat(values: Array) -> Array:
 
 def shaped(values: Array, shape: object) -> Array:
     """The inverse of `flat`: columns beyond those of the shape are left out."""
-    if not isinstance(shape, (list, tuple)) or not all(type(k) is int and k > 0 for k in shape):
+    if not isinstance(shape, (list, tuple)) or len(shape) > _MOST_DIMENSIONS:
         return values
-    columns = values.reshape(len(values), -1)
+    if not all(type(k) is int and k > 0 for k in shape):
+        return values
+    columns = values.reshape(len(values), math.prod(values.shape[1:]))
     size = math.prod(shape)
     return columns[:, :size].reshape(len(values), *shape) if size <= columns.shape[1] else values
 
