@@ -13,6 +13,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -20,11 +21,13 @@ import typer
 
 from .cli_arguments import (
     Bounds,
+    HeldAgainst,
     Json,
     MaxVertices,
     MeshFile,
     Metric,
     MetricField,
+    OffLines,
     OutlineFile,
     Output,
     Picture,
@@ -169,6 +172,8 @@ def check(
     size: Size = None,
     metric: Metric = None,
     metric_field: MetricField = None,
+    domain: HeldAgainst = None,
+    tolerance: OffLines = None,
     as_json: Json = False,
 ) -> None:
     """Check that a mesh is valid (exit code 0, else 1), and how well it fits a metric."""
@@ -178,7 +183,9 @@ def check(
         speaker = Speaker(as_json=as_json)
         request = Request(size, metric, metric_field)
         checked = am.read(mesh)
-        validity = checked.validate()
+        if domain is not None:
+            checked = replace(checked, domain=am.read_domain(domain))
+        validity = checked.validate(tolerance=tolerance)
         speaker.say(validity)
         speaker.note(mesh=str(mesh), valid=validity.ok, checks=[vars(c) for c in validity.checks])
         if not request.is_empty:

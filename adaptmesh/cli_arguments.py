@@ -98,6 +98,25 @@ Tolerance = Annotated[
         min=0.0, metavar="LENGTH", help="What is nearer is made one; 1e-9 of the extent if absent."
     ),
 ]
+HeldAgainst = Annotated[
+    Path | None,
+    typer.Option(
+        "--domain",
+        metavar="FILE",
+        exists=True,
+        dir_okay=False,
+        help="The domain that was meshed: its points, segments, regions, names have to be there.",
+    ),
+]
+OffLines = Annotated[
+    float | None,
+    typer.Option(
+        "--tolerance",
+        min=0.0,
+        metavar="LENGTH",
+        help="How far off the lines of the domain vertices may be; what rounding leaves if absent.",
+    ),
+]
 Title = Annotated[str | None, typer.Option(metavar="TEXT", help="Heading of the picture.")]
 Bounds = Annotated[
     tuple[float, float, float, float] | None,

@@ -163,6 +163,18 @@ def test_check_says_valid(run, mesh):
     assert str(am.measure(am.read(mesh), 0.25)) in fit.stdout
 
 
+def test_check_holds_a_mesh_against_its_domain(run, square):
+    made = run("generate", square, "--size", "0.5", "-o", "out.vtu")
+    assert made.exit_code == 0, made.output
+    held = run("check", "out.vtu", "--domain", square)
+    assert held.exit_code == 0, held.output
+    assert "regions of domain" in held.stdout
+    Path("other.wkt").write_text("POLYGON ((0 0, 3 0, 3 3, 0 3, 0 0))")
+    held = run("check", "out.vtu", "--domain", "other.wkt", "--tolerance", "1e-6")
+    assert held.exit_code == 1, held.output
+    assert "✗ points present" in held.stdout
+
+
 def test_check_says_invalid_by_exit_code(run, tmp_path):
     (tmp_path / "overlap.mesh").write_text(
         "MeshVersionFormatted 2\nDimension 2\nVertices\n4\n0 0 0\n1 0 0\n0 1 0\n0.2 0.2 0\n"
