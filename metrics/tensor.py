@@ -239,6 +239,7 @@ def hypot(first: ArrayLike, second: ArrayLike) -> Floats:
 
     Examples
     --------
+    >>> from metrics.tensor import hypot
     >>> hypot([[3.0, 0.0, 1.0]], [[4.0, 0.0, 0.0]])
     array([[5., 0., 1.]])
     """
