@@ -157,6 +157,7 @@ class Mesh(Value):
 
         Examples
         --------
+        >>> from adaptmesh import Mesh
         >>> mesh = Mesh([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1, 2), (0, 2, 3)])
         >>> mesh = mesh.with_names({"floor": lambda x: x[:, 1] < 1e-9})
         >>> mesh.edges_named("floor").tolist()

@@ -160,7 +160,7 @@ def nearest(*points: ArrayLike) -> Selector:
     --------
     >>> import adaptmesh as am
     >>> ring = [(0, 0), (1, 0), (1, 1), (0, 1)]
-    >>> square = am.Domain.polygon(ring, names={"left": nearest((0, 0.5))})
+    >>> square = am.Domain.polygon(ring, names={"left": am.nearest((0, 0.5))})
     >>> square.segment_tags.tolist()
     [0, 0, 0, 1]
     """
@@ -180,7 +180,7 @@ def facing(direction: ArrayLike, within: float = 30.0) -> Selector:
     --------
     >>> import adaptmesh as am
     >>> ring = [(0, 0), (1, 0), (1, 1), (0, 1)]
-    >>> square = am.Domain.polygon(ring, names={"top": facing((0, 1))})
+    >>> square = am.Domain.polygon(ring, names={"top": am.facing((0, 1))})
     >>> square.segment_tags.tolist()
     [0, 0, 1, 0]
     """
