@@ -1,8 +1,9 @@
-"""Where points of one mesh are in another, and how far outside they may be."""
+"""Where points of one mesh are in another, and what both have to be for that."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Real
 
 import numpy as np
 
@@ -41,9 +42,10 @@ def located(mesh: Mesh, which: str) -> Located:
     Raises
     ------
     TransferError
-        A triangle is not counter-clockwise, or too small or large for its area to be a number of
-        full precision; or the triangles are not a mesh.
+        As for `check_mesh`; a triangle is not counter-clockwise, or too small or large for its area
+        to be a number of full precision; or the triangles are not a mesh.
     """
+    check_mesh(mesh, which)
     bad = np.flatnonzero(~((mesh.areas >= SMALLEST_AREA) & (mesh.areas <= LARGEST_AREA)))
     if len(bad):
         t = int(bad[0])
@@ -63,6 +65,49 @@ def located(mesh: Mesh, which: str) -> Located:
         raise TransferError(f"the {which} mesh is not one: {error}") from error
 
 
+def check_mesh(mesh: Mesh, which: str) -> None:
+    """Refuse what is not a mesh, points that are not finite, and numbers of points there are not.
+
+    Raises
+    ------
+    TransferError
+    """
+    if not isinstance(mesh, Mesh):
+        raise TransferError(f"the {which} mesh: expected a Mesh, got {type(mesh).__name__}")
+    points, triangles = mesh.points, mesh.triangles
+    if not len(triangles):
+        raise TransferError(f"the {which} mesh has no triangles: expected one at least")
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        raise TransferError(
+            f"point {bad[0]} of the {which} mesh is {tuple(points[bad[0]].tolist())}: expected "
+            "finite coordinates"
+        )
+    bad = np.flatnonzero(((triangles < 0) | (triangles >= len(points))).any(axis=1))
+    if len(bad):
+        raise TransferError(
+            f"triangle {bad[0]} = {tuple(triangles[bad[0]].tolist())} of the {which} mesh: "
+            f"expected numbers of points from 0 to {len(points) - 1}"
+        )
+
+
+def check_no_loose_points(mesh: Mesh, which: str) -> None:
+    """Refuse a mesh with a point in no triangle, where no field is known."""
+    loose = np.flatnonzero(np.bincount(mesh.triangles.ravel(), minlength=len(mesh.points)) == 0)
+    if len(loose):
+        x, y = mesh.points[loose[0]].tolist()
+        raise TransferError(
+            f"point {loose[0]} of the {which} mesh, at ({x:g}, {y:g}), is in no triangle: leave it "
+            'out, or use method="interpolation"'
+        )
+
+
+def check_outside(outside: float) -> None:
+    """Refuse an `outside` that is not a number from 0 on."""
+    if not isinstance(outside, Real) or not outside >= 0:
+        raise TransferError(f"outside={outside!r}: expected a share of an edge, 0 or more")
+
+
 def check_triangles(numbers: Ints, ours: Located, theirs: Located, outside: float) -> None:
     """Refuse triangles of our mesh whose centroids are far outside of the other mesh."""
     centroids = ours.mesh.points[ours.mesh.triangles[numbers]].mean(axis=1)
@@ -76,8 +121,7 @@ def check_distances(
     places: Floats, distances: Floats, edges: Floats, outside: float, what: str, which: str
 ) -> None:
     """Refuse places (k, 2) that are farther from the mesh `which` than `outside` times an edge."""
-    if not outside >= 0:
-        raise TransferError(f"outside={outside!r}: expected a share of an edge, 0 or more")
+    check_outside(outside)
     far = np.flatnonzero(distances > outside * edges)
     if len(far):
         worst = int(far[np.argmax(distances[far])])

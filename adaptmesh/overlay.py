@@ -16,10 +16,20 @@ from numpy.typing import NDArray
 from . import _core
 from .errors import TransferError
 from .limiting import bounds_on_triangles, limited
-from .location import OUTSIDE, check_triangles, located
+from .location import (
+    OUTSIDE,
+    Located,
+    check_no_loose_points,
+    check_outside,
+    check_triangles,
+    located,
+)
 from .mesh import Mesh
 from .projection import mass_matrix, solve_mass
 from .spaces import Field, Floats, Ints, Space, as_field, as_fields
+
+COVERED_TWICE = 1e-6
+"""Parts of a triangle may exceed it by this share, far more than by rounding."""
 
 
 class Overlay:
@@ -42,8 +52,8 @@ class Overlay:
     Raises
     ------
     TransferError
-        The meshes do not overlap, a triangle of one is too far outside of the other, or a mesh is
-        broken.
+        The meshes do not overlap, a triangle of one is too far outside of the other, triangles of
+        one mesh overlap each other, or a mesh is broken.
 
     Notes
     -----
@@ -53,8 +63,10 @@ class Overlay:
     """
 
     def __init__(self, old_mesh: Mesh, new_mesh: Mesh, *, outside: float = OUTSIDE) -> None:
+        check_outside(outside)
         self.old_mesh, self.new_mesh = old_mesh, new_mesh
         old, new = located(old_mesh, "old"), located(new_mesh, "new")
+        check_no_loose_points(new_mesh, "new")
         self._core = _core.Overlay(old.locator, old_mesh.areas, new.locator, new_mesh.areas)
         first, olds, self.areas = self._core.pairs()
         news = np.repeat(np.arange(len(new_mesh.triangles), dtype=np.int32), np.diff(first))
@@ -63,6 +75,8 @@ class Overlay:
             raise TransferError(f"the meshes do not overlap: {old_mesh!r} and {new_mesh!r}")
         check_triangles(_missing(news, len(new_mesh.triangles)), new, old, outside)
         check_triangles(_missing(olds, len(old_mesh.triangles)), old, new, outside)
+        _check_covered_once(self.uncovered, new, old)
+        _check_covered_once(self.lost, old, new)
 
     @property
     def area(self) -> float:
@@ -126,6 +140,17 @@ class Overlay:
         ends = np.cumsum([field.columns.shape[1] for field in fields])[:-1]
         parts = np.split(projected, ends, axis=1)
         return [field.like(part) for field, part in zip(fields, parts, strict=True)]
+
+
+def _check_covered_once(beyond: Floats, ours: Located, theirs: Located) -> None:
+    """Refuse a mesh of which several triangles cover the same part of a triangle of ours."""
+    twice = np.flatnonzero(beyond < -COVERED_TWICE * ours.mesh.areas)
+    if len(twice):
+        x, y = ours.mesh.points[ours.mesh.triangles[twice[0]]].mean(axis=0).tolist()
+        raise TransferError(
+            f"triangles of the {theirs.which} mesh overlap each other, near ({x:g}, {y:g}): "
+            "Mesh.validate() finds them"
+        )
 
 
 def _missing(numbers: Ints, count: int) -> Ints:

@@ -9,7 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import TransferError
-from .location import OUTSIDE, Located, check_distances, located, longest_edges
+from .location import (
+    OUTSIDE,
+    Located,
+    check_distances,
+    check_mesh,
+    check_outside,
+    located,
+    longest_edges,
+)
 from .mesh import Mesh
 from .overlay import Overlay
 from .spaces import Field, Floats, Ints, Space, as_field, as_fields, basis
@@ -109,6 +117,9 @@ def transfer(
     """
     if method not in METHODS:
         raise TransferError(f"method={method!r} is none of {', '.join(map(repr, METHODS))}")
+    check_mesh(old_mesh, "old")
+    check_mesh(new_mesh, "new")
+    check_outside(outside)
     if is_same_mesh(old_mesh, new_mesh):
         method = "interpolation"
     if method == "conservative":

@@ -477,6 +477,31 @@ def test_coordinates_whose_areas_underflow_or_overflow_are_refused(scale):
         am.Overlay(old, new)
 
 
+def test_a_mesh_that_overlaps_itself_is_refused(pair):
+    """It would give an integral twice, or have it twice."""
+    good = pair[0]
+    n = len(good.points)
+    twice = am.Mesh(
+        np.tile(good.points, (2, 1)), np.concatenate([good.triangles, good.triangles + n])
+    )
+    with pytest.raises(am.TransferError, match="triangles of the new mesh overlap each other"):
+        am.Overlay(good, twice)
+    with pytest.raises(am.TransferError, match="triangles of the old mesh overlap each other"):
+        am.Overlay(twice, good)
+
+
+def test_a_new_mesh_with_a_point_in_no_triangle_is_refused(pair):
+    old, new = pair
+    loose = am.Mesh(np.concatenate([new.points, [(0.3, 0.4)]]), new.triangles)
+    number = len(new.points)
+    with pytest.raises(am.TransferError, match=rf"point {number} of the new mesh, at \(0.3, 0.4\)"):
+        am.Overlay(old, loose)
+    moved = am.transfer(old.points[:, 0], old, loose)
+    np.testing.assert_allclose(moved, loose.points[:, 0], atol=1e-14)
+    back = am.transfer(loose.points[:, 0], loose, old, method="conservative")
+    np.testing.assert_allclose(back, old.points[:, 0], atol=1e-13)
+
+
 def test_many_fields_and_one_overlay(pair):
     old, new = pair
     rng = np.random.default_rng(0)

@@ -161,6 +161,8 @@ BAD = {
     "wrong space": (lambda m: np.ones(len(m.points)), {"space": "P0"}, "P0 on the old mesh takes"),
     "method": (lambda m: np.ones(len(m.points)), {"method": "magic"}, "'magic' is none of"),
     "negative": (lambda m: np.ones(len(m.points)), {"outside": -1}, "outside=-1"),
+    "not a number": (lambda m: np.ones(len(m.points)), {"outside": np.nan}, "outside=nan"),
+    "no number": (lambda m: np.ones(len(m.points)), {"outside": None}, "outside=None"),
     "unknown name": (lambda m: {"u": np.ones(len(m.points))}, {"space": {"v": "P1"}}, "no such"),
 }
 
@@ -185,6 +187,28 @@ def test_a_length_that_fits_two_spaces():
     with pytest.raises(am.TransferError, match="fits P0 or P1: say space='P0' or space='P1'"):
         am.transfer(np.ones(6), ring, ring)
     assert am.transfer(np.ones(6), ring, ring, space="P0").shape == (6,)
+
+
+TRIANGLE = [(0, 0), (1, 0), (0, 1)]
+BROKEN = {
+    "a number too large": (TRIANGLE, [(0, 1, 3)], r"triangle 0 = \(0, 1, 3\) .* from 0 to 2"),
+    "a negative number": (TRIANGLE, [(0, 1, -1)], r"triangle 0 = \(0, 1, -1\) .* from 0 to 2"),
+    "nan": ([*TRIANGLE[:2], (np.nan, 1)], [(0, 1, 2)], r"point 2 of the .* \(nan, 1.0\)"),
+    "no triangle": (TRIANGLE, np.empty((0, 3), int), "has no triangles"),
+}
+
+
+@pytest.mark.parametrize("method", ["interpolation", "conservative"])
+@pytest.mark.parametrize("case", BROKEN, ids=str)
+def test_broken_meshes_are_refused_by_both_methods(case, method):
+    points, triangles, message = BROKEN[case]
+    good, broken = mesh_of(0.5), am.Mesh(points, triangles)
+    for old, new, which in ((good, broken, "new"), (broken, good, "old")):
+        with pytest.raises(am.TransferError, match=message) as caught:
+            am.transfer(np.ones(len(old.points)), old, new, method=method, space="P1")
+        assert f"the {which} mesh" in str(caught.value)
+    with pytest.raises(am.TransferError, match="the old mesh: expected a Mesh, got NoneType"):
+        am.transfer(np.ones(3), None, good, method=method)
 
 
 @pytest.mark.parametrize(
