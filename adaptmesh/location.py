@@ -22,7 +22,7 @@ SMALLEST_AREA, LARGEST_AREA = 1e-250, 1e250
 """Of triangles, so that areas of parts of them neither underflow nor overflow."""
 
 REMEDIES = {
-    "old": "outside=inf takes the nearest value of the border all the same",
+    "old": "outside=inf takes the nearest values of the border all the same",
     "new": "outside=inf leaves out all the same what the new mesh does not cover",
 }
 

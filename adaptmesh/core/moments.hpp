@@ -8,7 +8,7 @@
 //
 //     at least half of K is covered    p is the L2 projection of u on the covered part
 //     less, and K is near              p is u on the old triangle nearest to the centroid of K
-//     else                             p is the value at the nearest point of the border
+//     else                             p interpolates u at the points nearest to the nodes of K
 //
 // Polynomials are extended by themselves in the first two cases. A polynomial that is small on half
 // of a triangle can't be large on all of it; and "near" is what keeps the second from being large.
@@ -171,12 +171,13 @@ class LocalMoments {
         }
     }
 
-    // Extends the value at `place` of the field taken.
-    void extend_value(const metrics::Location& place) {
-        const double corners[3][3] = {{place.weight[0], place.weight[1], place.weight[2]},
-                                      {place.weight[0], place.weight[1], place.weight[2]},
-                                      {place.weight[0], place.weight[1], place.weight[2]}};
-        extend_polynomial(corners);
+    // Extends by the polynomial that has at node i the value at `place` of the field taken.
+    void extend_to_node(int i, const metrics::Location& place) {
+        double u[N];
+        Degree::basis(place.weight, u);
+        for (std::size_t c = 0; c < columns_; ++c) {
+            extension_[i * columns_ + c] = field_taken(u, c);
+        }
     }
 
     // Draws the extension towards a value within bounds, as far as it has to be to keep them: the
@@ -330,17 +331,33 @@ class Moments {
     void extend(std::int32_t k) {
         const Triangle3 newer = overlay_.newer(k);
         const metrics::Location place = overlay_.place_of(k);
-        take(place.triangle);
         double corners[3][3];
-        if (local_.covered_area() >= Degree::COVERED * newer.area)
+        if (local_.covered_area() >= Degree::COVERED * newer.area) {
             local_.extend_from_covered();
-        else if (is_near(newer, overlay_.older(place.triangle), place.outside, corners))
+        } else if (is_near(newer, overlay_.older(place.triangle), place.outside, corners)) {
+            take(place.triangle);
             local_.extend_polynomial(corners);
-        else
-            local_.extend_value(place);
-        if (bounds_.low != nullptr)
+        } else {
+            interpolate_at_nearest(newer);
+        }
+        if (bounds_.low != nullptr) {
+            take(place.triangle);
             local_.bound_extension(bounds_of(k, place.triangle), place, newer.area);
+        }
         local_.fill(newer.area);
+    }
+
+    void interpolate_at_nearest(const Triangle3& newer) {
+        for (int i = 0; i < N; ++i) {
+            Point node{0, 0};
+            for (int j = 0; j < 3; ++j) {
+                node.x += Degree::AT[i][j] * newer.at[j].x;
+                node.y += Degree::AT[i][j] * newer.at[j].y;
+            }
+            const metrics::Location place = overlay_.place_of(node);
+            take(place.triangle);
+            local_.extend_to_node(i, place);
+        }
     }
 
     // Whether a polynomial on `older` may be extended over `newer`: whose centroid is outside by at

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "adaptmesh/core/exact_location.hpp"
 #include "adaptmesh/core/overlap.hpp"
 #include "metrics/core/locator.hpp"
 
@@ -54,9 +55,10 @@ class Overlay {
     // Where the centroid of a new triangle lies in the old mesh, or nearest to it.
     metrics::Location place_of(Index k) const {
         const Triangle3 t = newer(k);
-        return old_.locate((t.at[0].x + t.at[1].x + t.at[2].x) / 3,
-                           (t.at[0].y + t.at[1].y + t.at[2].y) / 3, Locator::NO_TRIANGLE);
+        return place_of(
+            {(t.at[0].x + t.at[1].x + t.at[2].x) / 3, (t.at[0].y + t.at[1].y + t.at[2].y) / 3});
     }
+    metrics::Location place_of(Point p) const { return ExactLocator(old_).locate(p); }
 
     Triangle3 older(Index t) const { return triangle_of(old_, old_areas_, t); }
     Triangle3 newer(Index k) const { return triangle_of(new_, new_areas_, k); }

@@ -8,7 +8,15 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from reference import supermesh
-from reference.mesh_pairs import KINDS, SAME_DOMAIN, moved_by_ulps, random_pair, refined
+from reference.mesh_pairs import (
+    HARD,
+    KINDS,
+    SAME_DOMAIN,
+    hard_pair,
+    moved_by_ulps,
+    random_pair,
+    refined,
+)
 from reference.transforms import TRANSFORMS, Transform
 
 import adaptmesh as am
@@ -189,6 +197,25 @@ def test_polynomials_come_back(kind, transform, seeds):
             expected = polynomial.at_nodes(new)
             error = np.abs(moved - expected).max() / np.abs(expected).max()
             assert error < 1e-12, (seed, space)
+
+
+@pytest.mark.parametrize("transform", TRANSFORMS[:6], ids=str)
+@pytest.mark.parametrize("kind", HARD)
+def test_polynomials_and_integrals_on_triangles_of_any_shape_and_size(kind, transform):
+    """Thinner than coordinates are rounded, and areas that differ by 20 powers of ten and more."""
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        old, new = hard_pair(rng, kind, transform)
+        overlay = am.Overlay(old, new)
+        for space, degree in zip(SPACES, range(3), strict=True):
+            polynomial = Polynomial(old, degree, rng)
+            moved = overlay.project(polynomial.at_nodes(old), space=space)
+            error = np.abs(moved - polynomial.at_nodes(new)).max() / np.abs(moved).max()
+            assert error < 1e-12, (seed, space)
+            values = rng.random(Space(old, space).size)
+            kept = overlay.project(values, space=space, keep_bounds=True)
+            before = integral(old, values, space)
+            assert integral(new, kept, space) == pytest.approx(before, rel=1e-13)
 
 
 def beyond(overlay):

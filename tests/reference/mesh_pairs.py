@@ -104,6 +104,49 @@ KINDS = [*DOMAINS, "chords", "refined", "coarsened", "renumbered", "moved by ulp
 SAME_DOMAIN = [kind for kind in KINDS if kind not in ("curved", "chords")]
 
 
+# ---- Delaunay triangulations of the unit square with points anywhere ----
+
+BOX = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+
+
+def strips(rng, axis):
+    """Points on two sides only: thin triangles across, and on turned sides slivers along."""
+    along, across = rng.random(30), np.repeat([0.0, 1.0], 15)
+    return np.stack([along, across] if axis == 0 else [across, along], axis=1)
+
+
+def cluster(rng, size):
+    return rng.uniform(0.25, 0.75, 2) + size * rng.normal(size=(20, 2))
+
+
+def log_grid():
+    """Sizes from 1e-12 to 1, and areas from 1e-24, before rounding turns some to slivers."""
+    steps = np.concatenate([[0], np.logspace(-12, 0, 7)])
+    return np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+
+
+HARD = {
+    "strips that cross": lambda rng: (strips(rng, 0), strips(rng, 1)),
+    "strips side by side": lambda rng: (strips(rng, 0), strips(rng, 0)),
+    "two clusters": lambda rng: (cluster(rng, 1e-3), cluster(rng, 1e-3)),
+    "a cluster": lambda rng: (cluster(rng, 1e-6), BOX),
+    "a dot": lambda rng: (BOX, cluster(rng, 1e-12)),
+    "fine in a corner": lambda rng: (rng.random((20, 2)), log_grid()),
+    "coarse in a corner": lambda rng: (log_grid(), rng.random((20, 2))),
+}
+
+
+def hard_pair(rng, kind, transform):
+    """Two meshes of the square, of triangles as thin and as different in size as can be."""
+
+    def mesh(points):
+        points = transform(np.unique(np.concatenate([points, BOX]), axis=0))
+        return am.Mesh(points, am.delaunay(points))
+
+    old, new = HARD[kind](rng)
+    return mesh(old), mesh(new)
+
+
 def random_pair(rng, kind, carry=lambda mesh: mesh):
     """Two meshes; `carry` maps each to the plane of the test, before new vertices are put in."""
     if kind in DOMAINS:
