@@ -286,26 +286,19 @@ class Triangulation {
     }
 
     // The edge from a to b as an edge of the triangle on its left; triangle NONE if there is none.
-    // Looked for around both ends: where parts of the triangulation touch in a vertex, turning
-    // around it meets but one of them.
+    // Turns around both ends by turns, so that a vertex of many triangles costs no more than its
+    // neighbour of few. Where parts of the triangulation touch in a vertex, one of them is seen;
+    // see fans.hpp.
     Place find_edge(Index a, Index b) const {
-        const auto is_wanted = [&](const Triangle& T, int i, int j) {
-            return T.v[i] == a && T.v[j] == b;
-        };
-        for (const Index vertex : {a, b}) {
-            const Index home = triangle_at(vertex);
-            for (const bool clockwise : {false, true}) {
-                for (Index k = home; k != NONE;) {
-                    const Triangle& T = triangles[k];
-                    const int i = T.slot_of_vertex(vertex);
-                    if (is_wanted(T, i, next(i))) return {k, prev(i)};
-                    if (is_wanted(T, prev(i), i)) return {k, next(i)};
-                    k = triangle_of(T.n[clockwise ? prev(i) : next(i)]);
-                    if (k == home) break;
-                }
-            }
+        Turn turns[2] = {{a, triangle_at(a)}, {b, triangle_at(b)}};
+        for (int i = 0;; i = 1 - i) {
+            if (turns[i].at == NONE) return {NONE, 0};  // all of its triangles were looked at
+            const Triangle& T = triangles[turns[i].at];
+            const int slot = T.slot_of_vertex(turns[i].vertex);
+            if (i == 0 && T.v[next(slot)] == b) return {turns[i].at, prev(slot)};
+            if (i == 1 && T.v[prev(slot)] == a) return {turns[i].at, next(slot)};
+            turn_on(turns[i], T, slot);
         }
-        return {NONE, 0};
     }
 
     // Gives the fan of triangles that begins at the border with this one, at the vertex in this
@@ -383,6 +376,26 @@ class Triangulation {
     }
 
   private:
+    // A walk around a vertex: counter-clockwise from one of its triangles, and on from there
+    // clockwise if that ends at the border.
+    struct Turn {
+        Index vertex, start;
+        Index at = start;
+        bool is_clockwise = false;
+    };
+
+    // To the next triangle, NONE after the last; T is the one at hand, with the vertex in the slot.
+    void turn_on(Turn& turn, const Triangle& T, int slot) const {
+        Index code = T.n[turn.is_clockwise ? prev(slot) : next(slot)];
+        if (code == NONE && !turn.is_clockwise) {
+            turn.is_clockwise = true;
+            const Triangle& S = triangles[turn.start];
+            code = S.n[prev(S.slot_of_vertex(turn.vertex))];
+        }
+        turn.at = code == NONE ? NONE : triangle_of(code);
+        if (turn.at == turn.start) turn.at = NONE;
+    }
+
     // The triangles around a vertex counter-clockwise from one of them; false if that ends at the
     // border.
     bool turn_around(Index vertex, Index start, std::vector<Place>& places) const {
