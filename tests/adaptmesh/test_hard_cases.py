@@ -5,6 +5,8 @@ How unit the mesh is depends on what is possible: where boundaries are closer th
 the metric turns within an edge, no mesh is unit.
 """
 
+import time
+
 import numpy as np
 import pytest
 
@@ -407,3 +409,36 @@ def test_adapting_again_and_again_settles(metric):
     assert np.ptp(counts[5:]) < 0.08 * np.mean(counts[5:])
     assert np.ptp(shares[5:]) < 0.06
     assert min(shares[5:]) > 0.9
+
+
+# --- a side with far more points than units ---------------------------------------------------
+
+
+def finely_divided(n):
+    """The unit square, turned, with n points on one side."""
+    x = np.linspace(0, 1, n)
+    ring = np.concatenate([np.stack([x, 0 * x], axis=1), [(1, 1), (0, 1)]])
+    c, s = np.cos(0.7), np.sin(0.7)
+    return am.Domain.polygon(ring @ np.array([[c, s], [-s, c]]))
+
+
+def test_time_grows_with_the_points_of_a_side_and_not_with_their_square():
+    times = []
+    for n in (2000, 8000):
+        domain = finely_divided(n)
+        start = time.process_time()
+        am.generate(domain, 0.1)
+        times.append(time.process_time() - start)
+    assert times[1] < 8 * times[0]  # 16 times, if it were the square
+
+
+def test_a_finely_divided_side_leaves_the_rest_as_it_is():
+    meshed(finely_divided(200), 0.1)
+    mesh = am.generate(finely_divided(1000), lambda x: 1e-3 + 0.3 * near_side(x))
+    report = am.measure(mesh, lambda x: 1e-3 + 0.3 * near_side(x))
+    assert report.unit_fraction > 0.97
+
+
+def near_side(x):
+    """Distance from the line of the side with many points."""
+    return np.abs(np.cos(0.7) * x[:, 1] - np.sin(0.7) * x[:, 0])
