@@ -22,6 +22,7 @@ from .domain_input import (
     Ints,
     Label,
     checked_names,
+    checked_number,
     checked_points,
     checked_segments,
     joined_rings,
@@ -226,6 +227,10 @@ class Domain(Value):
     @classmethod
     def rectangle(cls, x0: float, y0: float, x1: float, y1: float) -> Domain:
         """The rectangle [x0, x1] x [y0, y1]; its sides are named bottom, right, top, left."""
+        x0, y0, x1, y1 = (
+            checked_number(value, what)
+            for value, what in ((x0, "x0"), (y0, "y0"), (x1, "x1"), (y1, "y1"))
+        )
         if not (x0 < x1 and y0 < y1):
             raise DomainError(f"rectangle({x0}, {y0}, {x1}, {y1}): x0 < x1 and y0 < y1 are wanted")
         corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
@@ -242,7 +247,7 @@ class Domain(Value):
         regions: ByLabel[ArrayLike] | None = None,
         tags: Mapping[str, int] | None = None,
         region_tags: Mapping[str, int] | None = None,
-        points: ArrayLike = (),
+        points: ArrayLike | None = None,
         corner_angle: float = 40.0,
         join_tolerance: float | None = None,
     ) -> Domain:
@@ -298,8 +303,12 @@ class Domain(Value):
         >>> round(ring.area / np.pi, 12)
         3.0
         """
-        if isinstance(curves, Curve):
-            raise DomainError(f"curves={curves!r}: a sequence of curves is wanted, [curve]")
+        if isinstance(curves, Curve) or not isinstance(curves, Iterable):
+            raise DomainError(f"curves={curves!r}: expected a sequence of curves, [curve]")
+        corner_angle = checked_number(corner_angle, "corner_angle")
+        if join_tolerance is not None:
+            join_tolerance = checked_number(join_tolerance, "join_tolerance")
+        points = () if points is None else points
         curves = tuple(curves)
         given, selectors = split_names(names)
         numbers, tag_of = checked_names(given, len(curves), "curve", tags)
@@ -459,7 +468,7 @@ class Domain(Value):
         out.periodic = (*self.periodic, pair)
         return out
 
-    def with_frozen(self, *names: str, segments: ArrayLike = ()) -> Domain:
+    def with_frozen(self, *names: str, segments: ArrayLike | None = None) -> Domain:
         """The same domain, where each segment of these names is one edge of every mesh.
 
         To fit the mesh of a neighbour, whose edges there are the segments: they are not cut, be the
@@ -479,7 +488,12 @@ class Domain(Value):
             point.
         """
         frozen = self.segment_is_frozen.copy()
-        numbers = np.asarray(segments, dtype=np.int64).ravel()
+        numbers = np.asarray(() if segments is None else segments).ravel()
+        if numbers.size and not np.issubdtype(numbers.dtype, np.integer):
+            raise DomainError(
+                f"segments={segments!r}: expected numbers of segments, from 0 to {len(frozen) - 1}"
+            )
+        numbers = numbers.astype(np.int64)
         unknown = numbers[(numbers < 0) | (numbers >= len(frozen))]
         if len(unknown):
             raise DomainError(f"segment {unknown[0]}: they are numbered 0 to {len(frozen) - 1}")
@@ -557,7 +571,7 @@ class Domain(Value):
         True
         """
         least = SMALLEST_TOLERANCE * float(np.ptp(self.points, axis=0).max())
-        if not tolerance >= least:
+        if not checked_number(tolerance, "tolerance") >= least:
             raise DomainError(f"tolerance={tolerance}: at least {least:g} is wanted")
         if isinstance(names, str):
             raise TypeError(f"names={names!r}: give a list of names, [{names!r}]")

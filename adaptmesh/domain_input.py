@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -102,6 +103,17 @@ def _without_heights(points: Floats, what: str) -> Floats:
             "[:, :2] of the points"
         )
     return np.ascontiguousarray(points[:, :2])
+
+
+def checked_number(value: object, what: str) -> float:
+    """A finite real number, or a `DomainError`."""
+    try:
+        number = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not math.isfinite(number) or isinstance(value, str):
+        raise DomainError(f"{what}={value!r}: expected a finite number")
+    return number
 
 
 def checked_pairs(segments: ArrayLike, n_points: int) -> Ints:

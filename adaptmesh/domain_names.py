@@ -98,6 +98,8 @@ def renamed_tags(
     Names that no side bears any longer are dropped.
     """
     given, selectors = split_names(names)
+    if given and not len(sides):
+        raise DomainError(f"there are no sides to give the name {next(iter(given))!r} to")
     unnamed = np.setdiff1d(old[old != 0], list(old_names.values())).tolist()
     numbers, _ = numbered([*given, *unnamed], old_names, "tag")
     numbers, tags = checked_names(given, len(sides), what, numbers)

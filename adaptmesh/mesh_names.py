@@ -27,7 +27,7 @@ def mesh_with_names(mesh: Mesh, names: ByLabel[Chosen]) -> Mesh:
     """As `Mesh.with_names`."""
     if mesh.domain is not None:
         return _as_its_domain(mesh, names)
-    edges, old = with_interfaces(mesh)
+    edges, old = with_interfaces(mesh) if len(mesh.triangles) else (mesh.edges, mesh.edge_tags)
     sides = _sides_of_edges(mesh, edges)
     numbers, tags = renamed_tags(names, sides, old, mesh.names, "edge")
     return replace(mesh, edges=edges, edge_tags=tags, names=numbers)
@@ -52,7 +52,8 @@ def _as_its_domain(mesh: Mesh, names: ByLabel[Chosen]) -> Mesh:
     """The domain gets the names, and the edges along its lines those of the lines."""
     domain = mesh.domain
     assert domain is not None
-    numbered = [name for name in names if name not in split_names(names)[1]]
+    given, selectors = split_names(names)
+    numbered = [name for name in given if name not in selectors]
     if numbered:
         raise DomainError(
             f"name {numbered[0]!r} is given to numbers, but the mesh has a domain: name its sides, "

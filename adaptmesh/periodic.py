@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .chords import Chords, Surroundings, chords_along
+from .domain_input import checked_number
 from .errors import DomainError
 from .runs import Run
 from .value import Value
@@ -53,8 +54,7 @@ class Motion(Value):
     @classmethod
     def rotation(cls, degrees: float, centre: ArrayLike) -> Motion:
         """Anticlockwise about a centre."""
-        if not np.isfinite(degrees):
-            raise DomainError(f"rotation={degrees!r}: an angle in degrees is wanted")
+        degrees = checked_number(degrees, "rotation")
         c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
         turn = np.array([[c, -s], [s, c]])
         at = _vector(centre, "centre")
@@ -69,7 +69,10 @@ class Motion(Value):
 
 
 def _vector(value: ArrayLike, what: str) -> Floats:
-    out = np.array(value, np.float64)
+    try:
+        out = np.array(value, np.float64)
+    except (TypeError, ValueError):
+        out = np.full(2, np.nan)
     if out.shape != (2,) or not np.isfinite(out).all():
         raise DomainError(f"{what}={value!r}: two finite numbers are wanted")
     return out
@@ -106,6 +109,8 @@ def periodic_pair(
         raise DomainError(f"{first!r} cannot be periodic with itself: give two names")
     if tolerance is None:
         tolerance = TOLERANCE * float(np.ptp(domain.points, axis=0).max())
+    if checked_number(tolerance, "tolerance") < 0:
+        raise DomainError(f"tolerance={tolerance!r}: expected a distance, not less than 0")
     if motion is None:
         shift = sides[1].places(domain).mean(axis=0) - sides[0].places(domain).mean(axis=0)
         motion = Motion.translation(shift)

@@ -97,9 +97,8 @@ def used_tolerance(points: Floats, tolerance: float | None) -> float:
     Raises
     ------
     DomainError
-        If all points are the same, or so near that squares of distances underflow.
-    ValueError
-        If the tolerance is negative or not finite.
+        If all points are the same, or so near that squares of distances underflow; or if the
+        tolerance is negative or not finite.
     """
     extent = float(np.ptp(points, axis=0).max())
     if extent == 0:
@@ -111,8 +110,10 @@ def used_tolerance(points: Floats, tolerance: float | None) -> float:
         )
     if tolerance is None:
         tolerance = TOLERANCE * extent
-    if not 0 <= tolerance < np.inf:
-        raise ValueError(f"tolerance={tolerance!r}: a length is wanted, in units of coordinates")
+    if not (isinstance(tolerance, (int, float, np.number)) and 0 <= tolerance < np.inf):
+        raise DomainError(
+            f"tolerance={tolerance!r}: a length is wanted, in units of coordinates, from 0 on"
+        )
     return max(float(tolerance), ROUNDING * float(np.abs(points).max()))
 
 

@@ -11,12 +11,14 @@ from numpy.typing import ArrayLike
 from metrics import ControlSpace
 
 from ..adapt import control_space_on
+from ..domain import Domain
 from ..report import check_measurable
 from . import layers
 from .colours import ELLIPSE, Bytes
 from .ellipses import Ellipses, candidates, choose
 from .frame import Bounds, Frame, bounds_of
 from .key import Pen, count, draw_header, draw_legend, draw_scale, draw_surroundings
+from .numbers import Number, draw_numbers, mesh_of_domain, numbers_of
 from .paint import (
     Entry,
     Paint,
@@ -41,7 +43,7 @@ ELLIPSES = 150  # drawn when the number is not given
 
 
 def plot(
-    mesh: Mesh,
+    mesh: Mesh | Domain,
     metric: Any = None,
     *,
     show: str | ArrayLike = "mesh",
@@ -54,11 +56,14 @@ def plot(
     window_size: tuple[int, int] | None = None,
     off_screen: bool | None = None,
 ) -> pv.Plotter | None:
-    """Draw a mesh.
+    """Draw a mesh, or a domain with the numbers of its points and sides.
 
     Parameters
     ----------
-    mesh : Mesh
+    mesh : Mesh or Domain
+        Of a domain, sides are numbered in bold as ``names`` count them (segments, or curves), and
+        points, pale, as ``points`` does; curves are drawn by their chords. `show` may be "mesh" or
+        "region", and there are no metric and no ellipses then.
     metric : optional
         Anything that `measure` takes; what "length" and the ellipses show, and what "quality" is
         measured in (without one, in plain geometry).
@@ -103,6 +108,10 @@ def plot(
     >>> am.plot(mesh, 0.2, show="length", path="lengths.png")    # doctest: +SKIP
     >>> am.plot(mesh, 0.2, show="quality", ellipses=True).show() # doctest: +SKIP
     """
+    numbers: list[Number] = []
+    if isinstance(mesh, Domain):
+        _check_request_of_domain(metric, show, ellipses)
+        numbers, mesh, edges = numbers_of(mesh), mesh_of_domain(mesh), False
     check_measurable(mesh)
     target = None if path is None else check_path(path)
     field = None if metric is None else control_space_on(mesh, metric)
@@ -120,13 +129,30 @@ def plot(
         chosen = _draw_ellipses(plotter, frame, view, field, most)
         pen = Pen(plotter, frame)
         draw_surroundings(pen, outline=bounds is not None)
-        draw_header(pen, title, _caption(mesh, frame))
+        caption = _caption_of_domain(pen, numbers) if numbers else _caption(mesh, frame)
+        draw_header(pen, title, caption)
         _draw_key(pen, paint, names, chosen)
         if target is None:
             shown: pv.Plotter = plotter
             return shown
         write_picture(plotter, target)
     return None
+
+
+def _check_request_of_domain(metric: Any, show: str | ArrayLike, ellipses: bool | int) -> None:
+    if metric is not None or ellipses or not isinstance(show, str) or show not in KINDS[:2]:
+        raise ValueError(
+            "a domain is drawn without metric, ellipses or values, show='mesh' or 'region': mesh "
+            "it to see more"
+        )
+
+
+def _caption_of_domain(pen: Pen, numbers: list[Number]) -> str:
+    """What is numbered, after the numbers were drawn."""
+    drawn = draw_numbers(pen, numbers)
+    sides = sum(number.is_side for number in numbers)
+    words = f"{count(sides)} sides (bold), {count(len(numbers) - sides)} points"
+    return words if drawn == len(numbers) else f"{words}; {count(drawn)} numbers have room"
 
 
 def _check_request(show: str | ArrayLike, field: ControlSpace | None, most: int) -> None:

@@ -5,7 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from adaptmesh import Domain, DomainError
+from adaptmesh import Domain, DomainError, Outline, repair
+from adaptmesh.curves import Circle
 
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
 RING = [(0, 1), (1, 2), (2, 3), (3, 0)]
@@ -146,3 +147,45 @@ def test_rectangle():
 def test_names_that_are_none_are_refused(arguments, message):
     with pytest.raises(DomainError, match=re.escape(message)):
         Domain(SQUARE, RING, **arguments)
+
+
+NO_NUMBERS = [None, "1", float("nan"), [1.0]]
+
+
+@pytest.mark.parametrize("wrong", NO_NUMBERS)
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda x: Domain.rectangle(x, 0, 1, 1),
+        lambda x: Domain.rectangle(0, 0, 1, 1).with_periodic(
+            "left", "right", rotation="" if x is None else x
+        ),
+        lambda x: Domain.from_curves([Circle((0, 0), 1)], corner_angle=x),
+        lambda x: Domain(SQUARE, RING).outline(x),
+        lambda x: Domain.rectangle(0, 0, 1, 1).with_periodic(
+            "left", "right", translation="" if x is None else x
+        ),
+        lambda x: Domain.rectangle(0, 0, 1, 1).with_periodic(
+            "left", "right", tolerance="" if x is None else x
+        ),
+        lambda x: repair(SQUARE, tolerance="" if x is None else x),
+    ],
+)
+def test_what_is_no_number_is_refused(use, wrong):
+    with pytest.raises(DomainError):
+        use(wrong)
+
+
+def test_none_is_as_if_not_given():
+    nothing = dict.fromkeys(("holes", "regions", "names", "tags", "region_tags"))
+    assert Domain(SQUARE, RING, **nothing) == Domain(SQUARE, RING)
+    assert repair(Outline(SQUARE, RING, **nothing))[0] == repair(Outline(SQUARE, RING))[0]
+    circle = [Circle((0, 0), 1)]
+    more = {**nothing, "points": None, "join_tolerance": None}
+    assert Domain.from_curves(circle, **more) == Domain.from_curves(circle)
+    assert Domain.polygon(SQUARE, None, names=None) == Domain.polygon(SQUARE)
+    assert Domain(SQUARE, RING).with_names({}) == Domain(SQUARE, RING)
+    assert Domain(SQUARE, RING).with_frozen(segments=None) == Domain(SQUARE, RING)
+    for curves in (None, [], [None], Circle((0, 0), 1)):
+        with pytest.raises(DomainError, match="curve"):
+            Domain.from_curves(curves)

@@ -91,7 +91,7 @@ def test_what_does_not_correspond_is_named():
         square.with_periodic("left", "right", translation=(1, 0), rotation=90)
     with pytest.raises(DomainError, match="two finite numbers"):
         square.with_periodic("left", "right", translation=(np.nan, 0))
-    with pytest.raises(DomainError, match="angle in degrees"):
+    with pytest.raises(DomainError, match="rotation=inf: expected a finite number"):
         square.with_periodic("left", "bottom", rotation=np.inf)
     quarter = square.with_periodic("left", "bottom", rotation=-90, centre=(0, 0), tolerance=1e-9)
     assert quarter.periodic[0].first == "left"

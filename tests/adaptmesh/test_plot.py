@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import metrics
+from adaptmesh.domain import Domain
 from adaptmesh.errors import FormatError
 from adaptmesh.mesh import Mesh
 from adaptmesh.plot import colours, ellipses, plot
@@ -273,6 +274,24 @@ def test_other_formats(can_draw, tmp_path, suffix, magic):
 def test_request_refused(request_, words):
     with pytest.raises(ValueError, match=words):
         plot(MESH, **request_)
+
+
+def test_domain_with_numbers(draw):
+    """Each number is where its side or point is; regions and names as of a mesh."""
+    points, ring = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+    domain = Domain(points, ring, names={"wall": [0]}, regions={"steel": (0.5, 0.5)})
+    bare = draw(Mesh(points, [(0, 1, 2), (0, 2, 3)], edges=ring), edges=False)
+    numbered = draw(domain)
+    assert numbered.shape == draw(domain, show="region").shape
+    frame = Frame.of((0, 0, 1, 1), (420, 300), False, True)
+    for x, y in [*points, (0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5)]:
+        px, py = (np.array([x, y]) * (frame.view[2] - frame.view[0])) + frame.view[:2]
+        near = numbered[int(300 - py) - 16 : int(300 - py) + 8, int(px) - 8 : int(px) + 18]
+        assert near.size and (near.min(axis=2) < 200).any()
+    assert numbered.std() > 0 and bare.std() > 0
+    for wrong in ({"metric": 0.1}, {"ellipses": True}, {"show": "quality"}, {"show": [1.0]}):
+        with pytest.raises(ValueError, match="a domain is drawn without"):
+            plot(domain, **wrong)
 
 
 def test_path_refused(tmp_path):
