@@ -32,7 +32,7 @@ from .domain_input import (
 from .domain_names import domain_with_names, sides_of_domain, tags_of_sides
 from .errors import DomainError
 from .naming import Chosen, Selector, chosen_tags, split_names
-from .periodic import Motion, PeriodicPair, periodic_pair
+from .periodic import Motion, PeriodicPair, periodic_pair, with_pair
 from .runs import points_on
 from .value import Value
 
@@ -463,10 +463,7 @@ class Domain(Value):
                 raise DomainError(
                     f"{name!r} is periodic already, with {other.first!r} and {other.second!r}"
                 )
-        pair = periodic_pair(self, first, second, motion, tolerance)
-        out = copy.copy(self)
-        out.periodic = (*self.periodic, pair)
-        return out
+        return with_pair(self, periodic_pair(self, first, second, motion, tolerance))
 
     def with_frozen(self, *names: str, segments: ArrayLike | None = None) -> Domain:
         """The same domain, where each segment of these names is one edge of every mesh.

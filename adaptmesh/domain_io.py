@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from .bamg import read_bamg_geometry
 from .coverage import domain_of_shapes
 from .domain import Domain
 from .drawings import Drawing, read_dxf, read_svg
-from .errors import DomainError
+from .errors import DomainError, FormatWarning
 from .geo import read_geo
 from .geojson import read_geojson
 from .io.located import located, only_our_errors
@@ -71,7 +72,24 @@ def read_domain(path: str | os.PathLike[str]) -> Domain:
     with only_our_errors(path), located(path, DomainError):
         if isinstance(raw, Domain):
             return raw
-        return domain_of_shapes(raw) if isinstance(raw, list) else raw.domain()
+        return (
+            domain_of_shapes(_without_empty(raw, path)) if isinstance(raw, list) else raw.domain()
+        )
+
+
+def _without_empty(shapes: list[Shape], path: str | os.PathLike[str]) -> list[Shape]:
+    """The shapes that are not empty; features of a file may have no geometry, or an empty one."""
+    kept = [shape for shape in shapes if not shape.is_empty]
+    if not kept or len(kept) == len(shapes):
+        return shapes
+    left_out = [shape.label for shape in shapes if shape.is_empty]
+    more = f" and {len(left_out) - 3} more" if len(left_out) > 3 else ""
+    warnings.warn(
+        f"{path}: {', '.join(left_out[:3])}{more}: without geometry, passed over",
+        FormatWarning,
+        stacklevel=4,
+    )
+    return kept
 
 
 def read_raw(path: str | os.PathLike[str]) -> Domain | Outline | Drawing | list[Shape]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .domain import Domain
     from .domain_input import ByLabel
     from .naming import Chosen
+    from .periodic import PeriodicPair, PeriodicSides
     from .validate import Validity
 
 Floats = NDArray[np.float64]
@@ -57,6 +58,9 @@ class Mesh(Value):
         of it has to have, too.
     required_edges : (q,) array of int32, optional
         Likewise, the rows of `edges` that have to stay undivided; see `Domain.with_frozen`.
+    periodic : tuple, optional
+        Likewise, pairs of boundaries whose vertices correspond, each with `first`, `second` and the
+        motion between; see `Domain.with_periodic`.
     """
 
     points: Floats
@@ -70,6 +74,7 @@ class Mesh(Value):
     kept: Ints | None = None
     required_points: Ints = field(default_factory=lambda: np.empty(0, np.int32))
     required_edges: Ints = field(default_factory=lambda: np.empty(0, np.int32))
+    periodic: tuple[PeriodicSides, ...] = ()
 
     def __post_init__(self) -> None:
         def put(name: str, value: object) -> None:
@@ -129,14 +134,16 @@ class Mesh(Value):
         return np.flatnonzero(self.regions == number).astype(np.int32)
 
     def periodic_vertices(self) -> dict[tuple[str, str], Ints]:
-        """For each pair of periodic boundaries of the domain, vertices that correspond, (k, 2).
+        """For each pair of periodic boundaries, vertices that correspond, (k, 2).
 
         In each row a vertex on the first boundary and its image on the second; see
         `Domain.with_periodic`.
         """
         from .periodic import periodic_vertices
 
-        pairs = () if self.domain is None else self.domain.periodic
+        pairs: Sequence[PeriodicPair | PeriodicSides] = (
+            self.periodic if self.domain is None else self.domain.periodic
+        )
         return {(p.first, p.second): periodic_vertices(self, p) for p in pairs}
 
     def with_names(self, names: ByLabel[Chosen]) -> Mesh:

@@ -10,6 +10,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
@@ -98,6 +99,22 @@ class PeriodicPair(Value):
     motion: Motion
     pieces: Index
     runs: Index
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicSides(Value):
+    """Two boundaries by name, and the motion that carries the first to the second."""
+
+    first: str
+    second: str
+    motion: Motion
+
+
+def with_pair(domain: Domain, pair: PeriodicPair) -> Domain:
+    """The same domain with one more pair of periodic boundaries."""
+    out = copy.copy(domain)
+    out.periodic = (*domain.periodic, pair)
+    return out
 
 
 def periodic_pair(
@@ -293,7 +310,7 @@ def images_on(run: Run, points: Floats) -> Floats:
     return out
 
 
-def periodic_vertices(mesh: Mesh, pair: PeriodicPair) -> Ints:
+def periodic_vertices(mesh: Mesh, pair: PeriodicPair | PeriodicSides) -> Ints:
     """Vertices (k, 2) of a mesh on the first boundary, and their images on the second."""
     from scipy.spatial import KDTree
 

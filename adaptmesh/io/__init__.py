@@ -16,6 +16,7 @@ they were, points bit for bit. A file is written whole or not at all.
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -24,7 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from metrics.control import Metric
 
-from ..errors import FormatError
+from ..errors import FormatError, FormatWarning
 from ..mesh import Mesh
 from ..parts import seeds_in
 from ..required import required_items
@@ -33,6 +34,7 @@ from .files import read_bytes, replace_files
 from .formats import FORMATS, Format, format_of
 from .located import located, only_our_errors
 from .outgoing import outgoing, solution_values
+from .periodic_sides import periodic_rows
 from .second_order import with_corners_only
 
 __all__ = ["FORMATS", "Format", "read", "read_fields", "read_sol", "write", "write_sol"]
@@ -152,10 +154,32 @@ def write(
         content = outgoing(mesh, metric, fields, triangle_fields or {})
         if target.required:
             content.required_points, content.required_edges = required_items(mesh)
+        _warn_of_what_is_lost(path, mesh, target)
         if target.seeds:
             content.hole_seeds, content.region_seeds = seeds_in(mesh)
         files = target.save(path, content, **given)
     replace_files(files)
+
+
+def _warn_of_what_is_lost(path: Path, mesh: Mesh, target: Format) -> None:
+    """Name what a format has no place for, if the mesh has it."""
+    lost = []
+    if _any_frozen(mesh) and not target.required:
+        lost.append("that edges are frozen (.mesh and .meshb keep it)")
+    if not target.periodic and periodic_rows(mesh):
+        lost.append("that boundaries are periodic (.mesh, .msh, .vtu and others keep it)")
+    if lost:
+        warnings.warn(
+            f"{path}: {path.suffix} does not keep {', nor '.join(lost)}",
+            FormatWarning,
+            stacklevel=3,
+        )
+
+
+def _any_frozen(mesh: Mesh) -> bool:
+    if mesh.domain is None:
+        return len(mesh.required_edges) > 0
+    return bool(np.any(mesh.domain.segment_is_frozen))
 
 
 def read_sol(path: PathLike) -> NDArray[np.float64]:

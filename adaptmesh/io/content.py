@@ -14,6 +14,7 @@ from ..cleaned import edges_once
 from ..domain_input import is_level
 from ..errors import FormatError
 from ..mesh import Mesh
+from .periodic_sides import Rows, periodic_sides
 
 Array = NDArray[Any]
 
@@ -27,7 +28,8 @@ class Content:
     Points are (n, 2) or (n, 3); fields are at the points or at the triangles; the metric is
     packed (m11, m12, m22). What is required are vertex numbers and rows of the edges. Seeds are
     points in holes (k, 2), and by number in the parts of regions. `others` are vertex numbers of
-    nodes of cells of higher order that are no corners, see `adaptmesh.io.second_order`.
+    nodes of cells of higher order that are no corners, see `adaptmesh.io.second_order`; periodic
+    boundaries are a list as in `adaptmesh.io.periodic_sides`.
     """
 
     points: Array
@@ -45,6 +47,7 @@ class Content:
     hole_seeds: Array = field(default_factory=lambda: np.empty((0, 2)))
     region_seeds: Mapping[int, Array] = field(default_factory=dict)
     others: Array = field(default_factory=lambda: np.empty(0, np.int64))
+    periodic: Rows = field(default_factory=list)
 
 
 def refuse_cells(counts: Mapping[str, int]) -> None:
@@ -88,6 +91,7 @@ def mesh_of(content: Content) -> Mesh:
         region_names=_named("region", content.region_names),
         required_points=content.required_points,
         required_edges=np.unique(once.edge[content.required_edges]),
+        periodic=periodic_sides(content.periodic, content.names),
     )
 
 

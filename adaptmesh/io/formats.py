@@ -28,6 +28,8 @@ class Format:
         The keywords of `save`.
     required : bool
         Whether it can tell which vertices and edges every mesh has to keep.
+    periodic : bool
+        Whether it can tell which boundaries are periodic.
     seeds : bool
         Whether it tells holes and regions by points in them.
     """
@@ -36,6 +38,7 @@ class Format:
     save: Callable[..., Mapping[Path, bytes]]
     options: frozenset[str] = frozenset()
     required: bool = False
+    periodic: bool = True
     seeds: bool = False
 
 
@@ -134,7 +137,7 @@ FORMATS: dict[str, Format] = {
     ".vtk": Format(_load_vtk, _save_vtk, frozenset({"binary"})),
     ".msh": Format(_load_gmsh, _save_gmsh, frozenset({"version", "binary"})),
     ".mesh": Format(_load_medit, _save_medit, required=True),
-    ".meshb": Format(_load_medit, _save_medit, required=True),
+    ".meshb": Format(_load_medit, _save_medit, required=True, periodic=False),
     ".xdmf": Format(_load_xdmf, _save_xdmf),
     ".ele": Format(_load_triangle, _save_triangle, seeds=True),
 }

@@ -27,18 +27,20 @@ from __future__ import annotations
 
 import json
 import re
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ..errors import FormatError
+from ..errors import FormatError, FormatWarning
 from .bounded import Allowance, read_json, whole_number
 from .content import Array, Content, refuse_cells
 from .files import text_of
 from .gmsh_groups import in_several, name_several
 from .located import located
+from .periodic_sides import checked_rows
 from .records import BinaryCursor, Cursor, TextCursor, table
 from .spatial import plane_fields, shaped, shapes, spatial, spatial_tensor, take_metric
 
@@ -144,6 +146,13 @@ def decode(data: bytes) -> Content:
                 _read_view(body, order, out.node_data if name == "NodeData" else out.element_data)
             elif name == "PartitionedEntities":
                 raise FormatError("the mesh is partitioned; save it whole")
+            elif name == "Periodic":
+                warnings.warn(
+                    "periodic boundaries of Gmsh are passed over; declare them on the domain, "
+                    "Domain.of_mesh(mesh).with_periodic(first, second)",
+                    FormatWarning,
+                    stacklevel=5,
+                )
     return _together(out)
 
 
@@ -282,6 +291,7 @@ def _together(file: Sections) -> Content:
             if np.isin(view[0], triangles.tags).any()
         },
     )
+    content.periodic = checked_rows(file.ours.get("periodic", []))
     name_several(file, 1, content.edge_tags, content.names)
     name_several(file, 2, content.regions, content.region_names)
     content.others = np.concatenate([inside, on_edges])
@@ -393,6 +403,8 @@ def _names_sections(content: Content) -> list[bytes]:
         ours["plane_fields"] = plane
     if of_shape:
         ours["shapes"] = of_shape
+    if content.periodic:
+        ours["periodic"] = content.periodic
     parts = []
     if lines:
         parts.append(section("PhysicalNames", f"{len(lines)}\n{''.join(lines)}".encode()))

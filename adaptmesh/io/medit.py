@@ -5,6 +5,7 @@ they are put where its readers skip them:
 
     .mesh   comment lines        # adaptmesh edge 3 "inlet"      (the name as a JSON string)
                                  # adaptmesh region 1 "steel"
+                                 # adaptmesh periodic [["left", "right", [1, 0, 0, 1, 2, 0]]]
     .meshb  ReferenceStrings     libMeshb's keyword 199: keyword of the cells (5 edges,
                                  6 triangles), reference, name in 256 bytes of UTF-8
 
@@ -21,17 +22,19 @@ from __future__ import annotations
 
 import json
 import re
+import warnings
 from collections.abc import Mapping
 
 import numpy as np
 
-from ..errors import FormatError
+from ..errors import FormatError, FormatWarning
 from .bounded import read_json
 from .content import Array, Content, refuse_cells
 from .files import text_of
 from .located import located
 from .medit_keywords import (
     NUMBERS,
+    OURS,
     Keyword,
     MeditFile,
     binary_file,
@@ -40,6 +43,7 @@ from .medit_keywords import (
     opened,
     text_file,
 )
+from .periodic_sides import Rows, checked_rows
 from .records import table
 
 # columns of integers, the last of which is the reference
@@ -50,6 +54,7 @@ _OTHER_CELLS = {
 }  # fmt: skip
 _REQUIRED = ("RequiredVertices", "RequiredEdges", "Corners")
 _NAME_BYTES = 256
+_PERIODIC = re.compile(r"#[ \t]*adaptmesh periodic (\[.*\])[ \t]*$", re.MULTILINE)
 _OURS = re.compile(r"#[ \t]*adaptmesh (edge|region)\b")
 _COMMENT = re.compile(r'#[ \t]*adaptmesh (edge|region) (-?[0-9]{1,10}) (".*")[ \t]*')
 
@@ -83,6 +88,8 @@ def decode(data: bytes, *, binary: bool) -> Content:
                 file.skip()
     if vertices is None:
         raise FormatError("has no Vertices")
+    if file.lacks_end:
+        _check_whole(cells)
     refuse_cells({name: len(cells[name]) for name in _OTHER_CELLS if name in cells})
     triangles, regions, inside = _of_any_order(cells, "Triangles", 3)
     edges, tags, on_edges = _of_any_order(cells, "Edges", 2)
@@ -97,6 +104,7 @@ def decode(data: bytes, *, binary: bool) -> Content:
         required_points=np.union1d(required["RequiredVertices"], required["Corners"]),
         required_edges=required["RequiredEdges"],
         others=np.concatenate([inside, on_edges]),
+        periodic=[] if binary else _commented_periodic(text_of(data)),
     )
 
 
@@ -123,6 +131,25 @@ def _commented_names(text: str) -> dict[str, dict[str, int]]:
                 raise FormatError(f"the name in the comment {comment[:80]!r} is damaged")
             names[said[1]][_unquoted(said[3])] = int(said[2])
     return names
+
+
+def _check_whole(cells: Mapping[str, Array]) -> None:
+    """A file without End is taken for whole if it has all that may be lost: edges and triangles."""
+    if not any(k.startswith("Edges") for k in cells) or not any(
+        k.startswith("Triangles") for k in cells
+    ):
+        raise FormatError(
+            "has no End, and not both Edges and Triangles: it is cut short (if it is whole, add "
+            "the line 'End')"
+        )
+    warnings.warn(
+        "has no End; taken for whole, as it has Edges and Triangles", FormatWarning, stacklevel=7
+    )
+
+
+def _commented_periodic(text: str) -> Rows:
+    found = _PERIODIC.search(text)
+    return checked_rows(read_json(found[1])) if found else []
 
 
 def _unquoted(quoted: str) -> str:
@@ -168,7 +195,9 @@ def encode(content: Content, *, binary: bool) -> bytes:
 
 
 def _comments(content: Content) -> str:
-    return "".join(
+    rows = content.periodic
+    periodic = f"# adaptmesh periodic {json.dumps(rows)}\n" if rows else ""
+    return OURS + periodic + "".join(
         f"# adaptmesh {kind} {tag} {json.dumps(name, ensure_ascii=False)}\n"
         for kind, names in (("edge", content.names), ("region", content.region_names))
         for name, tag in names.items()

@@ -23,6 +23,8 @@ NUMBERS = {
 }  # fmt: skip
 """The number of each keyword that we know, in binary files."""
 _NAMES = {number: name for name, number in NUMBERS.items()}
+OURS = "# adaptmesh\n"
+"""The comment that begins those of our own meshes."""
 _LONGEST_OF_VERSION_2 = 2_000_000_000
 Keyword = tuple[str, list[int], bytes]
 """A keyword to be written: name, counts, rows."""
@@ -36,6 +38,7 @@ class MeditFile(Protocol):
 
     real: str
     integer: str
+    lacks_end: bool
 
     @property
     def cursor(self) -> Cursor:
@@ -72,6 +75,9 @@ class TextFile:
     real, integer = "f8", "i8"
 
     def __init__(self, data: bytes) -> None:
+        # BAMG and others leave it out. What ends within a line, or in our own files, is cut short.
+        self.lacks_end = False
+        self._may_lack_end = data.endswith((b"\n", b"\r")) and OURS.encode() not in data
         text = re.sub(r"\"[^\"\n]*\"|#[^\n]*", "", text_of(data))
         self.cursor = TextCursor(text.encode())
         if self.cursor.word() != b"MeshVersionFormatted":
@@ -81,7 +87,12 @@ class TextFile:
     def next_keyword(self) -> str:
         word = self.cursor.word()
         if word is None:
-            raise FormatError("has no End: it is cut short (if it is whole, add the line 'End')")
+            if not self._may_lack_end:
+                raise FormatError(
+                    "has no End: it is cut short (if it is whole, add the line 'End')"
+                )
+            self.lacks_end = True
+            return "End"
         if not word.isalnum() or word.isdigit():
             raise FormatError(f"a keyword was expected, found {word[:24]!r}: a count may be wrong")
         return word.decode()
@@ -101,6 +112,7 @@ class BinaryFile:
         orders = {b"\x01\0\0\0": "<", b"\0\0\0\x01": ">"}
         if data[:4] not in orders:
             raise FormatError("does not start with the number 1: it is no binary Medit file")
+        self.lacks_end = False
         self.cursor = BinaryCursor(data, orders[data[:4]])
         self.cursor.at = 4
         version = one(self.cursor)

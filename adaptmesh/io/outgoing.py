@@ -13,6 +13,7 @@ from metrics.control import ControlSpace, Metric, as_control_space
 from ..errors import FormatError
 from ..mesh import Mesh
 from .content import Array, Content, check_finite, check_vertices
+from .periodic_sides import periodic_rows
 
 _RESERVED = ("metric", "regions", "edge_tags")
 
@@ -41,6 +42,7 @@ def outgoing(
         names=dict(mesh.names),
         region_names=dict(mesh.region_names),
         metric=None if metric is None else _packed(metric, mesh.points),
+        periodic=periodic_rows(mesh),
     )
     for name in [*mesh.names, *mesh.region_names]:
         if not isinstance(name, str) or not name or not _is_unicode(name):

@@ -66,6 +66,8 @@ def decode(data: bytes, *, binary: bool) -> Solution:
                 found = _read(keyword, file, dim)
             else:
                 file.skip()
+    if file.lacks_end:
+        raise FormatError("has no End: it is cut short (if it is whole, add the line 'End')")
     if found is None:
         raise FormatError(f"has neither {' nor '.join(_PLACES)}: there is no field to read")
     return found

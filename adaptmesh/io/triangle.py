@@ -52,6 +52,7 @@ def encode(content: Content, path: Path) -> dict[Path, bytes]:
     ele = [
         *_field_comments(content.triangle_fields),
         *_name_comments("regions", content.region_names),
+        *([f"# periodic 1 {json.dumps(content.periodic)}\n"] if content.periodic else []),
         _header(m, 3, sum(v.shape[1] for v in of_triangles)),
         _rows(content.triangles, *of_triangles),
     ]
@@ -119,6 +120,7 @@ def decode(path: Path) -> Content:
         point_fields=node.fields(points.attributes),
         triangle_fields=triangle_fields,
         others=others,
+        periodic=ele.periodic(),
     )
     content.metric = content.point_fields.pop("metric", None)
     return content

@@ -7,6 +7,7 @@ whose further words do not matter; everything after ``#`` is a comment. In comme
     # field 1 "u"                a field by its number of columns, in the order of attributes
     # edge_tags 3 "inlet"        the name of a tag, in .poly
     # regions 7 "steel"          and of a region, in .poly and .ele
+    # periodic 1 [...]           periodic boundaries, in .ele
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ from ..errors import FormatError
 from .bounded import read_json
 from .content import Array
 from .files import read_text
+from .located import located
+from .periodic_sides import Rows, checked_rows
 
 OURS, END = "adaptmesh", "end"
 _COMMENT = re.compile(r"#[^\n]*")
@@ -115,6 +118,12 @@ class Table:
     def names(self, kind: str) -> dict[str, int]:
         """Numbers by name."""
         return dict(self._said(kind))
+
+    def periodic(self) -> Rows:
+        """Periodic boundaries, see `adaptmesh.io.periodic_sides`."""
+        found = [words[2] for words in self._comments if words[:1] == ["periodic"] and words[2:]]
+        with located(self.path):
+            return [row for text in found for row in checked_rows(read_json(text))]
 
     def _said(self, kind: str) -> list[tuple[str, int]]:
         """Names and numbers in comments of ours of that kind."""

@@ -13,6 +13,7 @@ One grid holds the triangles (VTK type 5) and after them the constrained edges (
                 regions: steel      number of a named region
                 columns: u          2 for a field that had 2 columns
                 shape: s            that of the values of a field with more than one axis
+                periodic: ["a","b"] the motion from boundary a to b: its turn by row, and shift
 
 Names are in the names of arrays because meshio, through which many read VTK's files, stops at
 arrays of strings. There ``% " & < >`` and control characters are %25, %22, ..., since VTK does not
@@ -21,6 +22,7 @@ escape them when it saves a `.vtu` file again.
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -29,7 +31,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import FormatError
+from .bounded import read_json
 from .content import Array, Content, refuse_cells
+from .periodic_sides import checked_rows
 from .spatial import (
     flat,
     plane_fields,
@@ -50,7 +54,8 @@ _KINDS = {
 _EDGES = (_LINE, 21, 35, 68, 75)  # linear, quadratic, cubic, of Lagrange and Bézier
 _TRIANGLES = (_TRIANGLE, 22, 34, 69, 76)
 _EDGE, _REGION, _COLUMNS, _SHAPE = "edge_tags: ", "regions: ", "columns: ", "shape: "
-_OURS = (_EDGE, _REGION, _COLUMNS, _SHAPE)
+_PERIODIC = "periodic: "
+_OURS = (_EDGE, _REGION, _COLUMNS, _SHAPE, _PERIODIC)
 
 
 @dataclass
@@ -98,7 +103,13 @@ def grid_of(content: Content) -> Grid:
         np.repeat(np.array([_TRIANGLE, _LINE], np.uint8), [m, k]),
         point_data,
         cell_data,
-        {name: np.array(number, np.int32).reshape(-1) for name, number in numbers.items()},
+        {
+            **{name: np.array(number, np.int32).reshape(-1) for name, number in numbers.items()},
+            **{
+                _PERIODIC + _escaped(json.dumps([first, second], ensure_ascii=False)): np.array(row)
+                for first, second, row in content.periodic
+            },
+        },
     )
 
 
@@ -202,6 +213,11 @@ def take_names(content: Content, fields: Mapping[str, Array]) -> None:
     for full, number in fields.items():
         prefix = next(p for p in _OURS if full.startswith(p))
         name = full.removeprefix(prefix)
+        if prefix == _PERIODIC:
+            names = read_json(_unescaped(name))
+            rows = [[*names, number.ravel().tolist()]] if isinstance(names, list) else None
+            content.periodic += checked_rows(rows)
+            continue
         if prefix == _SHAPE and number.dtype.kind in "iu":
             for of in (content.point_fields, content.triangle_fields):
                 if name in of:

@@ -18,7 +18,7 @@ from __future__ import annotations
 import io
 import json
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
@@ -29,6 +29,7 @@ from ..errors import FormatError, FormatWarning
 from .bounded import read_json, read_xml
 from .content import Array, Content, check_vertices, refuse_cells
 from .hdf5 import import_h5py
+from .periodic_sides import Rows, checked_rows
 from .xdmf_arrays import XdmfArrays
 
 if TYPE_CHECKING:
@@ -78,8 +79,9 @@ def encode(content: Content, arrays_name: str) -> tuple[bytes, bytes]:
         '<?xml version="1.0" encoding="utf-8"?>',
         '<Xdmf Version="3.0">',
         "<Domain>",
-        _information("names", content.names),
-        _information("region_names", content.region_names),
+        _information("names", dict(content.names)),
+        _information("region_names", dict(content.region_names)),
+        *([_information("periodic", content.periodic)] if content.periodic else []),
         *grids,
         "</Domain>",
         "</Xdmf>",
@@ -132,8 +134,8 @@ def _grid(name: str, *parts: str) -> str:
     return "\n".join([f'<Grid Name="{name}" GridType="Uniform">', *parts, "</Grid>"])
 
 
-def _information(what: str, names: Mapping[str, int]) -> str:
-    return f'<Information Name="{what}" Value={quoteattr(json.dumps(dict(names)))}/>'
+def _information(what: str, value: object) -> str:
+    return f'<Information Name="{what}" Value={quoteattr(json.dumps(value))}/>'
 
 
 def _xml_text(text: str) -> str:
@@ -163,6 +165,7 @@ def decode(data: bytes, folder: Path) -> Content:
         point_fields=first.point_fields,
         triangle_fields=first.triangle_fields,
         others=first.others,
+        periodic=_periodic(domain),
     )
     content.metric = content.point_fields.pop("metric", None)
     if _is_integer(content.triangle_fields.get(_CELLS)):
@@ -337,6 +340,13 @@ def _matched(triangles: Array, tagged: Array, tags: Array) -> Array:
     out = np.zeros(len(triangles), np.int64)
     out[found] = tags
     return out
+
+
+def _periodic(domain: Element) -> Rows:
+    for information in domain.findall("Information"):
+        if information.get("Name") == "periodic":
+            return checked_rows(read_json(information.get("Value", "")))
+    return []
 
 
 def _names(domain: Element, what: str) -> dict[str, int]:
