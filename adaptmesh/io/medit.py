@@ -197,10 +197,14 @@ def encode(content: Content, *, binary: bool) -> bytes:
 def _comments(content: Content) -> str:
     rows = content.periodic
     periodic = f"# adaptmesh periodic {json.dumps(rows)}\n" if rows else ""
-    return OURS + periodic + "".join(
-        f"# adaptmesh {kind} {tag} {json.dumps(name, ensure_ascii=False)}\n"
-        for kind, names in (("edge", content.names), ("region", content.region_names))
-        for name, tag in names.items()
+    return (
+        OURS
+        + periodic
+        + "".join(
+            f"# adaptmesh {kind} {tag} {json.dumps(name, ensure_ascii=False)}\n"
+            for kind, names in (("edge", content.names), ("region", content.region_names))
+            for name, tag in names.items()
+        )
     )
 
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from .content import Array, Content
 
-
 _MOST_DIMENSIONS = 8
 
 

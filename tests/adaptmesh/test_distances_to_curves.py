@@ -25,7 +25,7 @@ def ellipse(t):
 
 
 def distance_to_ellipse(points):
-    """By bisections between 72 places: each ends on the ellipse, one of them where it is nearest."""
+    """By bisections between 72 places: each ends on the ellipse, one where it is nearest."""
     c, s = np.cos(TURN), np.sin(TURN)
     p = points @ np.array([[c, -s], [s, c]])  # in the axes of the ellipse
 
