@@ -27,7 +27,6 @@ def others():
     ("suffix", "way"), [(suffix, way) for suffix, ways in WHOLE.items() for way in ways]
 )
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
-@pytest.mark.filterwarnings("ignore::adaptmesh.errors.FormatWarning")
 def test_damaged(suffix, way, tmp_path, others, capfd, monkeypatch):
     monkeypatch.setattr(by_gmsh, "is_installed", lambda: False)  # it takes a process for each
     whole = Whole(suffix, way, tmp_path)

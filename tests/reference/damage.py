@@ -16,6 +16,7 @@ from reference.whole_files import WHOLE
 import adaptmesh as am
 from adaptmesh import io
 from adaptmesh.domain_io import OUTLINE_SUFFIXES
+from adaptmesh.errors import FormatWarning
 
 MEMORY = 1 << 30  # bytes that reading a file of some kB may take, beyond what is in use
 SECONDS = 20  # of processor time, where milliseconds are usual
@@ -128,6 +129,7 @@ def outcome(reader, path):
     try:
         with warnings.catch_warnings(), little_time():
             warnings.simplefilter("error")
+            warnings.simplefilter("ignore", FormatWarning)  # of what is passed over
             reader(path)
     except am.AdaptmeshError as error:
         assert path.stem + "." in str(error), f"does not name the file: {error}"
