@@ -599,6 +599,7 @@ class Domain(Value):
         Examples
         --------
         >>> import metrics
+        >>> from adaptmesh import Domain
         >>> from adaptmesh.curves import Circle
         >>> ring = Domain.from_curves([Circle((0, 0), 2), Circle((0, 0), 1)], names={"hole": [1]})
         >>> d = metrics.Geometry(ring.sides("hole")).distances([(1.5, 0.0), (0.6, 0.8)])
