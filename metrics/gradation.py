@@ -69,9 +69,9 @@ def graded(
 
     Notes
     -----
-    The vertex of the smallest ellipse acts first; one that has been made finer acts again. As the
-    intersection is not associative, another order would give another, slightly different result;
-    this one is always the same.
+    The vertex of the smallest ellipse acts first, of those with one area that with the shortest
+    edges; one that has been made finer acts again. As the intersection is not associative, another
+    order would give another result; this one does not depend on the axes or the numbering.
 
     References
     ----------

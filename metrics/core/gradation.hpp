@@ -9,6 +9,10 @@
 //           p speaks            q has changed, is queued, and speaks in its turn
 //     p o------------> o q ------------> o ...
 //
+// Ellipses of one area are common, as where sizes are cut off at limits, and then it matters which
+// goes first. Rounding, which differs from frame to frame, must not decide: areas that agree to
+// rounding count as equal, and of those the vertex whose edges are shortest is first.
+//
 // A vertex changes only by more than the tolerance, and each step away from where a size comes from
 // allows more, so that it ends; and what has ended is left as it is when done again.
 #pragma once
@@ -17,6 +21,7 @@
 #include <cmath>
 #include <cstddef>
 #include <queue>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -37,9 +42,6 @@ struct Gradation {
 class Source {
   public:
     Source(Tensor m, const Gradation& rule) : m_(m), spectrum_(spectrum(m)), rule_(rule) {}
-
-    // The queue has the smallest ellipse on top.
-    static double urgency(Tensor m) { return det(m); }
 
     // Makes the metric at the other end of the edge (dx, dy) finer if it has to be; true if it had.
     bool refine(Tensor& other, double dx, double dy) const {
@@ -116,18 +118,49 @@ class Source {
     const Gradation& rule_;
 };
 
+// When a vertex is to speak: the smallest ellipse first, then the shortest edges.
+struct Turn {
+    double smallness, shortness;
+    Index vertex;
+
+    Turn(Index v, Tensor m, double edge_squares)
+        : smallness(to_digits(det(m))), shortness(-to_digits(edge_squares)), vertex(v) {}
+
+    bool operator<(const Turn& other) const {  // the queue has the largest on top
+        return std::tie(smallness, shortness, vertex) <
+               std::tie(other.smallness, other.shortness, other.vertex);
+    }
+
+  private:
+    // The logarithm, to what rounding leaves alone.
+    static double to_digits(double x) { return std::round(std::log(x) * 1e9); }
+};
+
+// For each vertex the sum of the squares of its edges.
+inline std::vector<double> sums_of_squares(const double* points, const Adjacency& mesh) {
+    std::vector<double> out(mesh.size(), 0.0);
+    for (std::size_t p = 0; p < mesh.size(); ++p) {
+        for (const Index q : mesh.of(Index(p))) {
+            const double dx = points[2 * q] - points[2 * p];
+            const double dy = points[2 * q + 1] - points[2 * p + 1];
+            out[p] += dx * dx + dy * dy;
+        }
+    }
+    return out;
+}
+
 // tensors: packed, one for each of the points; changed in place.
 inline void grade(const double* points, Tensor* tensors, const Adjacency& mesh,
                   const Gradation& rule) {
-    std::vector<std::pair<double, Index>> all;
+    const std::vector<double> squares = sums_of_squares(points, mesh);
+    const auto turn = [&](Index v) { return Turn(v, tensors[v], squares[v]); };
+    std::vector<Turn> all;
     all.reserve(mesh.size());
-    for (std::size_t v = 0; v < mesh.size(); ++v) {
-        all.emplace_back(Source::urgency(tensors[v]), Index(v));
-    }
-    std::priority_queue<std::pair<double, Index>> queue({}, std::move(all));
+    for (std::size_t v = 0; v < mesh.size(); ++v) all.push_back(turn(Index(v)));
+    std::priority_queue<Turn> queue({}, std::move(all));
     std::vector<char> waiting(mesh.size(), 1);
     while (!queue.empty()) {
-        const Index p = queue.top().second;
+        const Index p = queue.top().vertex;
         queue.pop();
         if (!waiting[p]) continue;  // it has spoken since, with a smaller ellipse
         waiting[p] = 0;
@@ -137,7 +170,7 @@ inline void grade(const double* points, Tensor* tensors, const Adjacency& mesh,
             const double dy = points[2 * q + 1] - points[2 * p + 1];
             if (!source.refine(tensors[q], dx, dy)) continue;
             waiting[q] = 1;
-            queue.emplace(Source::urgency(tensors[q]), q);
+            queue.push(turn(q));
         }
     }
 }

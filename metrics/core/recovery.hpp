@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "metrics/core/adjacency.hpp"
+#include "metrics/core/large_fans.hpp"
 #include "metrics/core/tensor.hpp"
 
 namespace metrics {
@@ -79,7 +80,11 @@ class QuadraticFit {
   public:
     // points: n pairs; values: one for each. Both are kept as they are and must live on.
     QuadraticFit(const double* points, const double* values, const Adjacency& mesh)
-        : points_(points), values_(values), mesh_(mesh), seen_(mesh.size(), -1) {}
+        : points_(points),
+          values_(values),
+          mesh_(mesh),
+          fans_(points, mesh),
+          seen_(mesh.size(), -1) {}
 
     // False if the points that can be reached from the vertex do not determine a quadratic.
     bool at(Index vertex, Derivatives& out) {
@@ -119,16 +124,33 @@ class QuadraticFit {
     bool add_ring(Index vertex, std::size_t& ring) {
         const std::size_t end = stencil_.size();
         for (; ring < end; ++ring) {
-            const Adjacency::Range fan = mesh_.of(stencil_[ring]);
-            const std::ptrdiff_t stride = 1 + fan.size() / LARGEST_FAN;
-            for (std::ptrdiff_t i = 0; i < fan.size(); i += stride) {
-                const Index w = fan.begin()[i];
-                if (seen_[w] == vertex) continue;
-                seen_[w] = vertex;
-                stencil_.push_back(w);
+            const Index w = stencil_[ring];
+            const Adjacency::Range fan = mesh_.of(w);
+            if (fan.size() <= LARGEST_FAN || w == vertex) {
+                for (const Index u : fan) add(vertex, u);
+            } else {
+                add_some(vertex, fans_.of(w));
             }
         }
         return stencil_.size() > end;
+    }
+
+    void add(Index vertex, Index w) {
+        if (seen_[w] == vertex) return;
+        seen_[w] = vertex;
+        stencil_.push_back(w);
+    }
+
+    // Every k-th neighbour of a hub, to both sides from the direction in which the vertex is: the
+    // same ones whatever the axes and the numbers of vertices.
+    void add_some(Index vertex, const LargeFans::Fan& fan) {
+        const std::ptrdiff_t n = std::ptrdiff_t(fan.size()), stride = 1 + n / LARGEST_FAN;
+        const std::ptrdiff_t start = fan.nearest(points_[2 * vertex], points_[2 * vertex + 1]);
+        add(vertex, fan.vertex((start + n) % n));
+        for (std::ptrdiff_t k = stride; 2 * k <= n; k += stride) {
+            add(vertex, fan.vertex((start + k) % n));
+            add(vertex, fan.vertex((start + n - k) % n));
+        }
     }
 
     // Fits to the stencil; returns how well it is determined.
@@ -288,6 +310,7 @@ class QuadraticFit {
     const double* points_;
     const double* values_;
     const Adjacency& mesh_;
+    LargeFans fans_;
     std::vector<Index> seen_;  // the last vertex whose stencil had this one
     std::vector<Index> stencil_;
     std::vector<double> rows_;

@@ -3,6 +3,8 @@
 import meshio
 import numpy as np
 import pytest
+from reference.frames import frames
+from reference.meshes import from_axes, irregular_square
 
 import metrics
 from metrics import MetricError, tensor
@@ -206,3 +208,29 @@ def test_counts_that_do_not_fit(folder, name, text, message):
     with pytest.raises(MetricError, match=message) as caught:
         metrics.read(folder / name)
     assert name in str(caught.value)
+
+
+@pytest.mark.parametrize("name", frames(*irregular_square(7))[1])
+def test_a_metric_that_is_read_is_the_same_in_any_frame(name, tmp_path):
+    points, triangles = irregular_square(7)
+    own, others = frames(points, triangles)
+    n, m = len(points), len(triangles)
+    values = from_axes(0.02 + points[:, 0], 0.3, points[:, 1])
+    inside = points[triangles].mean(axis=1)
+
+    def read(f):
+        rows = f.at_vertices(f.metric(values)).tolist()
+        head = ["MeshVersionFormatted 2", "Dimension 2"]
+        vertices = [f"{x!r} {y!r} 0" for x, y in f.points.tolist()]
+        triangles = [f"{a} {b} {c} 0" for a, b, c in (f.triangles + 1).tolist()]
+        mesh = [*head, "Vertices", str(n), *vertices, "Triangles", str(m), *triangles, "End"]
+        lines = [" ".join(map(repr, row)) for row in rows]
+        solution = [*head, "SolAtVertices", str(n), "1 3", *lines, "End"]
+        (tmp_path / "a.mesh").write_text("\n".join(mesh))
+        (tmp_path / "a.sol").write_text("\n".join(solution))
+        return f.old_tensors(metrics.read(tmp_path / "a.sol")(f.transform(inside)))
+
+    rounding = others[name].transform.rounding
+    wanted = read(own)
+    error = np.abs(read(others[name]) - wanted).max(axis=1) / np.abs(wanted).max(axis=1)
+    assert error.max() < 1e3 * rounding

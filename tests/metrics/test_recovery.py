@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from reference.frames import frames
 from reference.meshes import delaunay, irregular_square, on_border, regular_square
 
 from metrics import MetricError, absolute, gradients, hessians, tensor
@@ -25,6 +26,16 @@ def wave_hessian(x):
     x, y = x.T
     s = np.sin(3 * x) * np.cos(2 * y)
     return np.stack([-9 * s, -6 * np.cos(3 * x) * np.sin(2 * y) + 1, -4 * s], axis=1)
+
+
+def star(arms):
+    """A hub with so many neighbours, at irregular angles and distances."""
+    rng = np.random.default_rng(arms)
+    angle = 2 * np.pi * (np.arange(arms) + rng.uniform(-0.3, 0.3, arms)) / arms
+    rim = rng.uniform(0.8, 1, arms)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    k = np.arange(arms)
+    triangles = np.stack([0 * k, 1 + k, 1 + (k + 1) % arms], axis=1)
+    return np.concatenate([[[0.0, 0.0]], rim]), triangles
 
 
 def orders(error, mesh=irregular_square, sizes=(20, 40, 80)):
@@ -287,3 +298,31 @@ def test_where_the_mesh_is_one_triangle_thick_it_is_all_but_flat_across(angle):
         np.einsum("i,nij,j->n", along, second, along)[near], -16 * u[near], atol=2
     )
     assert abs(np.einsum("i,nij,j->n", across, second, across)[near]).max() < 1.6
+
+
+@pytest.mark.parametrize("frame", frames(*star(150))[1])
+def test_around_a_hub_results_do_not_depend_on_the_numbering_or_the_axes(frame):
+    """Of so many neighbours of the hub, those of the others are some: the same in any frame."""
+    points, triangles = star(150)
+    own, others = frames(points, triangles)
+    other = others[frame]
+    u = np.sin(3 * points[:, 0]) * points[:, 1]
+    wanted = hessians(own.points, own.triangles, u)
+    got = hessians(other.points, other.triangles, other.at_vertices(u))
+    back = other.old_tensors(other.old_vertices(got))
+    error = np.abs(back - wanted).max(axis=1) / np.abs(wanted).max(axis=1)
+    assert error.max() < 1e3 * other.transform.rounding
+
+
+@pytest.mark.parametrize("seed", range(0, 60))
+def test_fits_do_not_depend_on_the_axes_on_small_irregular_meshes(seed):
+    rng = np.random.default_rng(seed)
+    points = rng.random((rng.integers(7, 40), 2)) * [1, 10 ** rng.uniform(-3, 0)]
+    triangles = delaunay(points)
+    a = rng.uniform(0, 2 * np.pi)
+    turn = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    u = np.sin(4 * points[:, 0]) + points[:, 1] ** 3 / points[:, 1].max() ** 3
+    wanted = tensor.unpack(hessians(points, triangles, u))
+    got = turn.T @ tensor.unpack(hessians(points @ turn.T, triangles, u)) @ turn
+    error = np.abs(got - wanted).max(axis=(1, 2)) / np.abs(wanted).max(axis=(1, 2))
+    assert error.max() < 1e-9

@@ -275,3 +275,25 @@ def test_markers_in_attributes(name):
 def test_what_is_no_marker(bad):
     with pytest.raises(MetricError, match="no_data: expected a number"):
         Raster(TABLE, EXTENT, origin="upper", no_data=bad)
+
+
+@pytest.mark.parametrize("interpolation", ["linear", "nearest"])
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_a_raster_is_the_same_reflected_transposed_scaled_and_offset(scale, interpolation):
+    rng = np.random.default_rng(7)
+    values = rng.uniform(0.1, 1, (5, 7))
+    x, y = np.sort(rng.uniform(0, 1, 7)), np.sort(rng.uniform(0, 1, 5))
+    at = rng.uniform(-0.1, 1.1, (200, 2))
+    wanted = tensor.sizes(Raster(values, x=x, y=y, interpolation=interpolation)(at))
+
+    def same(values, x, y, at):
+        k, shift = scale, 100 * scale * np.array([1, -1])
+        x, y, at = k * x + shift[0], k * y + shift[1], k * at + shift
+        field = Raster(k * values, x=x, y=y, interpolation=interpolation)
+        np.testing.assert_allclose(tensor.sizes(field(at)) / k, wanted, rtol=1e-10)
+
+    same(values, x, y, at)
+    same(values[:, ::-1], x[::-1], y, at)
+    same(values, -x, y, at * (-1, 1))
+    same(values[::-1], x, -y[::-1], at * (1, -1))
+    same(values.T, y, x, at[:, ::-1])
