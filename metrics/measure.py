@@ -26,6 +26,7 @@ _SPARSE = 16  # with so many times more numbers than corners, most have no trian
 # When sqrt(det M) varies by more than the exponential of this on a triangle, anything may be
 # between samples.
 _SMOOTH = 3.0
+_DOUBT = 0.03  # how much an error that is only possible counts for, beside one that is seen
 _GAP = 0.2  # from a point of a triangle to the nearest sample, relative to its width
 
 _BLOCK = 1 << 15  # segments or triangles measured at a time: tens of megabytes
@@ -215,10 +216,14 @@ def _adapted(
         if error <= rtol * abs(value) or affordable <= 0:
             return Complexity(value, error, evaluations)
         errors = leaves.errors()
-        worst = np.argsort(-errors, kind="stable")
+        # What is known to be wrong goes first, what may be later, and the worst before what is less
+        # wrong by far: so a budget that is too small for the bound serves the value.
+        urgency = leaves.differences + _DOUBT * (errors - leaves.differences)
+        worst = np.argsort(-urgency, kind="stable")
         rest = error - np.cumsum(errors[worst])
         needed = int(np.count_nonzero(rest > 0.5 * rtol * abs(value))) + 1
-        chosen = worst[: min(needed, affordable)]
+        urgent = int(np.count_nonzero(urgency >= _DOUBT * urgency[worst[0]]))
+        chosen = worst[: min(needed, urgent, affordable)]
         leaves = leaves.cut(field, chosen)
         evaluations += cost * len(chosen)
 

@@ -302,7 +302,7 @@ def test_the_error_of_a_complexity_is_a_bound_for_layers_at_any_angle(thin, kind
             assert abs(got.value - wanted) <= got.error, (angle, growth)
             met.append(got.error <= 0.01 * got.value)
             assert met[-1] or got.evaluations > 99_000
-    assert all(met) or thin < 1e-3
+    assert all(met) or thin < 1e-2
 
 
 def test_complexity_keeps_its_budget_and_says_so():
