@@ -585,6 +585,12 @@ class Domain(Value):
         ends = points_on(self.curved.runs, np.repeat(run, 2), u.ravel()).reshape(-1, 2, 2)
         return np.concatenate([straight, ends])
 
+    def background_mesh(self, metric: Any) -> Mesh:
+        """A mesh of the domain for this metric, for what is to be known all over it."""
+        from .generate import generate
+
+        return generate(self, metric)
+
     def sides(self, *names: str) -> Sides:
         """The boundaries and lines of these names, curves as they are; all if none is given.
 

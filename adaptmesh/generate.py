@@ -39,6 +39,7 @@ def generate(
     domain: Domain,
     metric: Any,
     *,
+    gradation: float | None = None,
     placement: str = "front",
     max_vertices: int = 5_000_000,
     progress: Progress | None = None,
@@ -51,6 +52,12 @@ def generate(
     metric : number, callable, or control space
         A size h; or a function of an (n, 2) array of points that returns sizes (n,), packed metrics
         (n, 3) = (m11, m12, m22) or tensors (n, 2, 2); or anything made by `metrics`.
+    gradation : float, optional
+        Sizes grow by at most this factor from one unit edge to the next, above 1: beside jumps and
+        steep slopes of the metric, triangles are made smaller than it asks for, so that they can be
+        well shaped. 1.5 is usual. The mesh is then that of ``metric.graded(domain, gradation)``,
+        see `metrics.ControlSpace.graded`; two meshes more are made on the way. If not given, the
+        metric is taken as it is.
     placement : {"front", "edges"}
         How points are placed. ``"front"``: so as to make unit triangles, layer after layer from the
         constraints inwards, and along edges where that leaves gaps. ``"edges"``: only along edges
@@ -77,6 +84,9 @@ def generate(
         raise ValueError(f"placement={placement!r} is none of {', '.join(map(repr, PLACEMENTS))}")
     report = progress or (lambda stage, fraction: None)
     field = metrics.as_control_space(metric)
+    if gradation is not None:
+        report("grading the sizes", 0.0)
+        field = field.graded(domain, gradation)
 
     report("predicting the size", 0.0)
     samples = Samples(field)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,6 +122,12 @@ class Mesh(Value):
         if thin.any():
             out[thin] = _core.triangle_areas(p[thin].reshape(-1, 6))
         return out
+
+    def background_mesh(self, metric: Any) -> Mesh:
+        """Another mesh of the same domain, for this metric; see `Domain.background_mesh`."""
+        from .domain import Domain
+
+        return (self.domain or Domain.of_mesh(self)).background_mesh(metric)
 
     def edges_named(self, name: str) -> Ints:
         """The constrained edges that bear a name, (j, 2)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import Any, Literal
 
 import numpy as np
@@ -148,8 +149,16 @@ class Background(ControlSpace):
         """Packed tensors (n, 3) at the vertices, a fresh array."""
         return tensor.exp(self.logs)
 
-    def graded(self, beta: float = 1.5, law: str = "mixed") -> Background:
-        """The same background with sizes that grow no faster than `beta`: see `metrics.graded`."""
+    def graded(self, domain: Any = None, beta: float = 1.5, law: str = "mixed") -> ControlSpace:
+        """The same field with sizes that grow no faster than `beta`: see `metrics.graded`.
+
+        Without a domain, at the vertices of this background, which is the mesh of the result; with
+        one, everywhere in it, see `ControlSpace.graded`. ``graded(1.3)`` is ``graded(beta=1.3)``.
+        """
+        if isinstance(domain, Real):
+            domain, beta = None, float(domain)
+        if domain is not None:
+            return super().graded(domain, beta, law)
         limited = graded(self.tensors, self.points, self.triangles, beta, law)
         return Background(self.points, self.triangles, limited, self.outside)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from numbers import Real
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -81,6 +81,36 @@ class ControlSpace(ABC):
         Then the larger of the two sizes is lowered to `max_anisotropy` times the smaller.
         """
         return Limited(self, h_min, h_max, max_anisotropy)
+
+    def graded(self, domain: Any, beta: float = 1.5, law: str = "mixed") -> ControlSpace:
+        """The same field made finer where sizes would otherwise grow too fast within a domain.
+
+        Beside a jump from 0.01 to 1, sizes grow from 0.01 by at most `beta` from one unit edge to
+        the next. They spread within the domain, around its holes and not across them.
+
+        Parameters
+        ----------
+        domain : adaptmesh.Domain, adaptmesh.Mesh, or a mesh object
+            Of a domain, or of a mesh of adaptmesh, two meshes are made: one that has the sizes of
+            this field, and one of the field graded on that. Any other object with `points` and
+            `triangles` is taken as it is: the field is graded at its vertices, which must be close
+            enough for it.
+        beta, law
+            As for `metrics.graded`.
+
+        Returns
+        -------
+        ControlSpace
+            Nowhere coarser than this field, in no direction.
+
+        Raises
+        ------
+        MetricError
+            For a `beta` not above 1, another law, or something else than a domain or mesh.
+        """
+        from .graded_field import graded_on
+
+        return graded_on(self, domain, beta, law)
 
 
 Metric: TypeAlias = "float | Callable[[Floats], ArrayLike] | ControlSpace"

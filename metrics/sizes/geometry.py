@@ -141,7 +141,7 @@ class Geometry:
     def nearest(self, points: ArrayLike) -> Nearest:
         """What is nearest to points (n, 2)."""
         where = as_points(points)
-        segments, shares, feet, tangents = self._feet(where)
+        segments, shares, feet, tangents = self.feet(where)
         offsets = where - feet
         distances = np.hypot(offsets[:, 0], offsets[:, 1])
         directions = self._directions(offsets, distances, segments, shares, tangents)
@@ -150,23 +150,15 @@ class Geometry:
     def distances(self, points: ArrayLike) -> Floats:
         """Distances of points (n, 2), (n,), not negative."""
         where = as_points(points)
-        offsets = where - self._feet(where)[2]
+        offsets = where - self.feet(where)[2]
         return np.hypot(offsets[:, 0], offsets[:, 1])
 
-    def _feet(self, points: Floats) -> tuple[Ints, Floats, Floats, Floats]:
-        """Segments, places on them, the nearest points there and unit tangents."""
+    def feet(self, points: Floats) -> tuple[Ints, Floats, Floats, Floats]:
+        """Segments (n,), shares (n,), the nearest points (n, 2), and unit tangents there (n, 2)."""
         segments, shares, feet = self._search.nearest(points)
         if self._cubics is None:
             return segments, shares, feet, self._tangents[segments]
         return self._cubics.project(points, segments, shares)
-
-    def sides_of(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Whether points (n, 2) are on the left of what is nearest to them, (n,)."""
-        where = as_points(points)
-        _, _, feet, along = self._feet(where)
-        off = where - feet
-        out: NDArray[np.bool_] = along[:, 0] * off[:, 1] > along[:, 1] * off[:, 0]
-        return out
 
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether points (n, 2) are inside, (n,); what is in an even number of rings is outside.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from ..arrays import Floats, Ints, as_points, as_triangles
 from ..background import Background
 from ..control import ControlSpace
 from ..errors import MetricError
+from ..gradation import check_growth
 from .geometry import Geometry
 from .given import positive
 
@@ -33,6 +35,10 @@ class RegionSizes(ControlSpace):
         The size of each region, by its name; or by its number, such as 0 for what has no name.
     default : float, optional
         The size of regions that are not in `sizes`.
+    growth : float or None, optional
+        Beside a region of smaller sizes, sizes grow by at most this factor from one unit edge to
+        the next: triangles of very different sizes cannot be well shaped where they meet. None:
+        each region has its size everywhere, and sizes jump at interfaces.
     outside : {"clamp", "error"}, optional
         For a point outside of the mesh: the size at the nearest point of its border, or a
         `MetricError` that names the point.
@@ -44,8 +50,9 @@ class RegionSizes(ControlSpace):
 
     Notes
     -----
-    The size jumps at interfaces; triangles next to one grow only as gradation allows. A mesh of
-    this field alone has edges of both sizes there.
+    Sizes are graded as by ``RegionSizes(mesh, sizes, growth=None).graded(mesh, growth)``, when they
+    are asked for first, see `ControlSpace.graded`: on meshes made for it if `mesh` is one of
+    adaptmesh or a domain, else at the vertices of the mesh that is given.
     """
 
     def __init__(
@@ -54,31 +61,58 @@ class RegionSizes(ControlSpace):
         sizes: Mapping[str | int, float],
         default: float | None = None,
         outside: Literal["clamp", "error"] = "clamp",
+        growth: float | None = 1.5,
     ) -> None:
         domain: Any = getattr(mesh, "domain", None)
         if hasattr(domain, "cubic_pieces") and dict(domain.region_names) == dict(mesh.region_names):
             mesh = domain  # its sides are the curves themselves
-        points = as_points(mesh.points)
-        triangles = as_triangles(mesh.triangles, len(points))
-        regions = _regions_of(mesh, len(triangles))
-        self.sizes = dict(sizes)
-        of_triangles = _sizes_of(regions, dict(mesh.region_names), self.sizes, default)
-        #: Finds the triangle of a point; it carries no sizes.
-        self._finder = Background(points, triangles, np.ones(len(points)), outside)
-        if hasattr(mesh, "cubic_pieces"):  # between chords and curves is no outside
-            self._finder.allow_beyond(float(mesh.cubic_pieces().heights.max(initial=0.0)))
-        self._of_triangles = of_triangles
-        self._interfaces = _Interfaces.of(mesh, points, triangles, of_triangles)
+        self.sizes, self.growth = dict(sizes), growth
+        self._steps = _Steps(mesh, self.sizes, default, outside)
+        if growth is not None:
+            check_growth(growth, "mixed")
+        self._mesh = mesh
 
     def values(self, points: Floats) -> ArrayLike:
-        _, triangles = self._finder.evaluate(points)
-        found = self._of_triangles[triangles]
-        if self._interfaces is not None:
-            found = self._interfaces.sizes(points, found)
-        return found
+        if self.growth is None or self._steps.interfaces is None:
+            return self._steps(points)
+        return self._graded(points)
+
+    @cached_property
+    def _graded(self) -> ControlSpace:
+        assert self.growth is not None
+        return self._steps.graded(self._mesh, self.growth)
 
     def __repr__(self) -> str:
         return f"<RegionSizes: {', '.join(f'{name} {h:g}' for name, h in self.sizes.items())}>"
+
+
+class _Steps(ControlSpace):
+    """The size of the region that a point is in, the smaller one on interfaces."""
+
+    def __init__(
+        self,
+        mesh: Any,
+        sizes: dict[str | int, float],
+        default: float | None,
+        outside: Literal["clamp", "error"],
+    ) -> None:
+        points = as_points(mesh.points)
+        triangles = as_triangles(mesh.triangles, len(points))
+        regions = _regions_of(mesh, len(triangles))
+        self.of_triangles = _sizes_of(regions, dict(mesh.region_names), sizes, default)
+        #: Finds the triangle of a point; it carries no sizes.
+        self.finder = Background(points, triangles, np.ones(len(points)), outside)
+        if hasattr(mesh, "cubic_pieces"):  # between chords and curves is no outside
+            self.finder.allow_beyond(float(mesh.cubic_pieces().heights.max(initial=0.0)))
+        self.interfaces = _Interfaces.of(mesh, points, triangles, self.of_triangles)
+
+    def values(self, points: Floats) -> ArrayLike:
+        _, triangles = self.finder.evaluate(points)
+        found = self.of_triangles[triangles]
+        return found if self.interfaces is None else self.interfaces.sizes(points, found)
+
+    def __repr__(self) -> str:
+        return "sizes of regions"
 
 
 class _Interfaces:
@@ -118,18 +152,20 @@ class _Interfaces:
 
     def sizes(self, points: Floats, found: Floats) -> Floats:
         """The sizes at points, from those of the triangles that they are in."""
-        near = self.geometry.nearest(points)
-        piece = near.segments
-        beside = np.where(self.geometry.sides_of(points), self.left[piece], self.right[piece])
-        out = np.where(near.distances <= self.heights[piece], beside, found)
+        piece, shares, feet, along = self.geometry.feet(points)
+        off = points - feet
+        distances = np.hypot(*off.T)
+        is_left = along[:, 0] * off[:, 1] > along[:, 1] * off[:, 0]
+        beside = np.where(is_left, self.left[piece], self.right[piece])
+        out = np.where(distances <= self.heights[piece], beside, found)
         smaller = self.smaller[piece]
         span = np.diff(self.geometry.segments, axis=1)[piece, 0]
-        travelled = near.shares * np.hypot(*span.T)
+        travelled = shares * np.hypot(*span.T)
         for end, gap in enumerate((travelled, np.hypot(*span.T) - travelled)):
             at_end = gap <= self.margin
             vertex = self.ends[piece[at_end], end]
             smaller[at_end] = np.minimum(smaller[at_end], self.at_vertices[vertex])
-        is_on = near.distances <= self.margin
+        is_on = distances <= self.margin
         out[is_on] = np.minimum(out, smaller)[is_on]
         return out
 

@@ -141,7 +141,7 @@ def test_sizes_of_regions_between_curves(transform):
         holes=[],
         regions={"in": transform((0.0, 0.0)), "out": transform((0.0, 1.5))},
     )
-    field = metrics.RegionSizes(domain, {"in": 0.3, "out": 0.1}, outside="error")
+    field = metrics.RegionSizes(domain, {"in": 0.3, "out": 0.1}, outside="error", growth=None)
     rng = np.random.default_rng(1)
     t, off = rng.uniform(0, 2 * np.pi, 3000), rng.normal(size=3000) * 10.0 ** rng.uniform(-7, -1)
     normal = np.stack([np.cos(t) / AXES[0], np.sin(t) / AXES[1]], axis=1)
@@ -167,7 +167,7 @@ def test_regions_of_a_mesh_of_curves_are_those_of_its_domain():
         circles, holes=[], names={"i": [1]}, regions={"in": (0, 0), "ring": (0.75, 0)}
     )
     coarse = am.generate(domain, 0.4)
-    field = metrics.RegionSizes(coarse, {"in": 0.02, "ring": 0.2})
+    field = metrics.RegionSizes(coarse, {"in": 0.02, "ring": 0.2}, growth=None)
     t = np.linspace(0, 2 * np.pi, 721)
     on = 0.5 * np.stack([np.cos(t), np.sin(t)], axis=1)
     np.testing.assert_allclose(tensor.sizes(field(on)), 0.02)

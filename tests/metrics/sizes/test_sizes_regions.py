@@ -33,14 +33,14 @@ def sizes(field, points):
 def test_by_name_by_number_and_by_default():
     points = [[0.5, 0.3], [1.5, 0.3], [2.5, 0.3], [3.5, 0.8]]
     for field in (
-        RegionSizes(MESH, {"steel": 0.1, "air": 0.5, 0: 0.3}),
-        RegionSizes(MESH, {1: 0.1, "air": 0.5}, default=0.3),
+        RegionSizes(MESH, {"steel": 0.1, "air": 0.5, 0: 0.3}, growth=None),
+        RegionSizes(MESH, {1: 0.1, "air": 0.5}, default=0.3, growth=None),
     ):
         np.testing.assert_allclose(sizes(field, points), [0.1, 0.5, 0.3, 0.1])
 
 
 def test_the_smaller_on_an_interface():
-    field = RegionSizes(MESH, {"steel": 0.1, "air": 0.5}, default=0.3)
+    field = RegionSizes(MESH, {"steel": 0.1, "air": 0.5}, default=0.3, growth=None)
     y = np.linspace(0, 1, 11)
     for x, wanted in ((1.0, 0.1), (2.0, 0.3), (3.0, 0.1)):
         points = np.stack([np.full(11, x), y], axis=1)
@@ -56,15 +56,17 @@ def test_the_smallest_at_a_vertex_of_three_regions():
         triangle_regions=np.array([1, 2, 3, 3]),
         region_names={"a": 1, "b": 2, "c": 3},
     )
-    field = RegionSizes(mesh, {"a": 0.3, "b": 0.1, "c": 0.2})
+    field = RegionSizes(mesh, {"a": 0.3, "b": 0.1, "c": 0.2}, growth=None)
     points = [[0, 0], [0.5, 0], [-0.5, 0], [0, 0.5], [0.1, -0.1]]
     np.testing.assert_allclose(sizes(field, points), [0.1, 0.2, 0.1, 0.1, 0.2])
 
 
 def test_outside():
-    np.testing.assert_allclose(sizes(RegionSizes(MESH, {"steel": 0.1}, 1.0), [[-3, 0.5]]), 0.1)
+    np.testing.assert_allclose(
+        sizes(RegionSizes(MESH, {"steel": 0.1}, 1.0, growth=None), [[-3, 0.5]]), 0.1
+    )
     with pytest.raises(MetricError, match="outside"):
-        RegionSizes(MESH, {"steel": 0.1}, 1.0, outside="error")([[-3, 0.5]])
+        RegionSizes(MESH, {"steel": 0.1}, 1.0, outside="error", growth=None)([[-3, 0.5]])
 
 
 def test_one_region_has_no_interfaces():
