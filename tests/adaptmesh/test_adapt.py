@@ -172,7 +172,7 @@ def test_what_is_no_mesh_is_named(plate):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"points": [(0, 0, 0), (1, 0, 0)]}, "points must be an (n, 2) array, not one of shape"),
+        ({"points": [(0, 0, 0, 0)]}, "points must be an (n, 2) array, not one of shape"),
         ({"triangles": [0, 1, 2]}, "triangles must be an (n, 3) array, not one of shape (3,)"),
         ({"triangles": [(0, 1, 2), (0, 2.5, 3)]}, "triangle 1 is [0.0, 2.5, 3.0]: whole numbers"),
         ({"triangles": [(0, 1, 2**40)]}, "triangle 0 is [0, 1, 1099511627776]: whole numbers"),

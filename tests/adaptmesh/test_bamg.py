@@ -66,7 +66,7 @@ def test_bamg_puts_its_vertices_on_our_curves(g, case):
     command = [bamg, "-g", path, "-o", out, "-hmax", "0.1", "-hmin", "0.1"]
     subprocess.run(command, check=True, capture_output=True)
     theirs = am.read(out)
-    curves = _Geometry.of(path.read_bytes()).curves()
+    curves = _Geometry.of(path.read_text()).curves()
     lines = np.stack([c.point(T) for c in curves])
     p, d = lines[:, :-1].reshape(-1, 2), np.diff(lines, axis=1).reshape(-1, 2)
     on_border = theirs.points[np.unique(theirs.edges)]
