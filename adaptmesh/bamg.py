@@ -273,11 +273,20 @@ def _read_subdomains(geometry: _Geometry, cursor: TextCursor) -> None:
     geometry.subdomains = cursor.rows(_count(cursor), ("i8", 4))[0] - [0, 1, 0, 0]
 
 
+def _read_sizes(geometry: _Geometry, cursor: TextCursor) -> None:
+    """Sizes are not used, but that there is one for each vertex shows that no line is missing."""
+    if len(geometry.vertices):
+        cursor.rows(len(geometry.vertices), ("f8", 1))
+    else:
+        cursor.skip_numbers()
+
+
 _READERS: dict[str, Callable[[_Geometry, TextCursor], None]] = {
     "Dimension": _read_dimension,
     "AngleOfCornerBound": _read_angle,
     "MaximalAngleOfCorner": _read_angle,
     "Vertices": _read_vertices,
+    "hVertices": _read_sizes,
     "Edges": _read_edges,
     "Corners": _read_corners,
     "RequiredVertices": _read_required_vertices,

@@ -61,6 +61,7 @@ def read_poly(path: str | os.PathLike[str]) -> Outline:
             names.setdefault(said.get(tag, str(tag)), []).append(i)
     tags = {name: int(markers[numbers[0]]) for name, numbers in names.items()}
     regions, region_tags = _regions(table) if table else ({}, {})
+    table.finish()
     return Outline(points.places, segments, holes, regions, names, tags, region_tags)
 
 

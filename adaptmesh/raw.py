@@ -256,7 +256,7 @@ def not_a_polygon(label: str, kind: str | None) -> str:
 
 def _ring(points: Any, label: str) -> Floats:
     """The first two coordinates of the points of a ring."""
-    if np.iscomplexobj(points):
+    if isinstance(points, np.ndarray) and points.dtype.kind == "c":
         raise FormatError(f"{label} cannot be read: its coordinates are complex")
     try:
         out = np.asarray(points, dtype=np.float64)

@@ -146,7 +146,7 @@ class _Words:
         except MetricError:
             raise
         except (OSError, ValueError) as error:
-            raise MetricError(f"{path} cannot be read: {error}") from error
+            raise MetricError(f"{path} cannot be read: {error}") from None
         lines = (line.split("#", 1)[0] for line in text.splitlines())
         self.words = " ".join(lines).split()
         self.path, self.place = path, 0
@@ -178,7 +178,7 @@ class _Words:
         try:
             return np.array(words, np.float64)
         except ValueError as error:
-            raise MetricError(f"{self.path}: {what}: {error}") from error
+            raise MetricError(f"{self.path}: {what}: {error}") from None
 
     def integer(self, what: str) -> int:
         value = float(self.numbers(1, what)[0])

@@ -3,7 +3,8 @@
 Triangles bear their region as reference, edges their tag, vertices 0. Medit knows no names, so
 they are put where its readers skip them:
 
-    .mesh   comment lines        # adaptmesh edge 3 "inlet"      (the name as a JSON string)
+    .mesh   comment lines        # adaptmesh counts {...}        see `adaptmesh.io.counts`
+                                 # adaptmesh edge 3 "inlet"      (the name as a JSON string)
                                  # adaptmesh region 1 "steel"
                                  # adaptmesh periodic [["left", "right", [1, 0, 0, 1, 2, 0]]]
     .meshb  ReferenceStrings     libMeshb's keyword 199: keyword of the cells (5 edges,
@@ -30,6 +31,7 @@ import numpy as np
 from ..errors import FormatError, FormatWarning
 from .bounded import read_json
 from .content import Array, Content, refuse_cells
+from .counts import check_stated, stated
 from .files import text_of
 from .located import located
 from .medit_keywords import (
@@ -54,7 +56,8 @@ _OTHER_CELLS = {
 }  # fmt: skip
 _REQUIRED = ("RequiredVertices", "RequiredEdges", "Corners")
 _NAME_BYTES = 256
-_PERIODIC = re.compile(r"#[ \t]*adaptmesh periodic (\[.*\])[ \t]*$", re.MULTILINE)
+_PERIODIC = re.compile(r"^#[ \t]*adaptmesh periodic (\[.*\])[ \t]*$", re.MULTILINE)
+_COUNTS = re.compile(r"^# adaptmesh counts (\{[^\n]{1,500}\})", re.MULTILINE)
 _OURS = re.compile(r"#[ \t]*adaptmesh (edge|region)\b")
 _COMMENT = re.compile(r'#[ \t]*adaptmesh (edge|region) (-?[0-9]{1,10}) (".*")[ \t]*')
 
@@ -93,7 +96,7 @@ def decode(data: bytes, *, binary: bool) -> Content:
     refuse_cells({name: len(cells[name]) for name in _OTHER_CELLS if name in cells})
     triangles, regions, inside = _of_any_order(cells, "Triangles", 3)
     edges, tags, on_edges = _of_any_order(cells, "Edges", 2)
-    return Content(
+    content = Content(
         vertices,
         triangles,
         regions,
@@ -106,6 +109,10 @@ def decode(data: bytes, *, binary: bool) -> Content:
         others=np.concatenate([inside, on_edges]),
         periodic=[] if binary else _commented_periodic(text_of(data)),
     )
+    said = None if binary else _COUNTS.search(text_of(data))
+    if said is not None:
+        check_stated(said[1], content)
+    return content
 
 
 def _of_any_order(
@@ -199,6 +206,7 @@ def _comments(content: Content) -> str:
     periodic = f"# adaptmesh periodic {json.dumps(rows)}\n" if rows else ""
     return (
         OURS
+        + f"# adaptmesh counts {stated(content, fields=False)}\n"
         + periodic
         + "".join(
             f"# adaptmesh {kind} {tag} {json.dumps(name, ensure_ascii=False)}\n"

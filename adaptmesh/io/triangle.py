@@ -27,7 +27,9 @@ from pathlib import Path
 import numpy as np
 
 from .content import Array, Content
-from .triangle_tables import END, OURS, Table, read_points, read_segments
+from .counts import check_stated, stated
+from .located import located
+from .triangle_tables import COUNTS, END, OURS, Table, read_points, read_segments
 
 # ---------------------------------------------------------------------------------------- writing
 
@@ -50,6 +52,7 @@ def encode(content: Content, path: Path) -> dict[Path, bytes]:
         _rows(content.points, *of_points, on_edge),
     ]
     ele = [
+        f"# {COUNTS} {stated(content)}\n",
         *_field_comments(content.triangle_fields),
         *_name_comments("regions", content.region_names),
         *([f"# periodic 1 {json.dumps(content.periodic)}\n"] if content.periodic else []),
@@ -123,6 +126,11 @@ def decode(path: Path) -> Content:
         periodic=ele.periodic(),
     )
     content.metric = content.point_fields.pop("metric", None)
+    for table in (ele, node):
+        table.finish()
+    if ele.counts:
+        with located(path):
+            check_stated(ele.counts, content)
     return content
 
 

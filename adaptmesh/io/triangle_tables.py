@@ -4,6 +4,7 @@ https://www.cs.cmu.edu/~quake/triangle.node.html, and there .ele and .poly. Ever
 whose further words do not matter; everything after ``#`` is a comment. In comments of ours::
 
     # adaptmesh                  first; the last line is then "# end", or the file was cut short
+    # counts {...}               what all files together hold, see `adaptmesh.io.counts`, in .ele
     # field 1 "u"                a field by its number of columns, in the order of attributes
     # edge_tags 3 "inlet"        the name of a tag, in .poly
     # regions 7 "steel"          and of a region, in .poly and .ele
@@ -25,7 +26,7 @@ from .files import read_text
 from .located import located
 from .periodic_sides import Rows, checked_rows
 
-OURS, END = "adaptmesh", "end"
+OURS, END, COUNTS = "adaptmesh", "end", "counts"
 _COMMENT = re.compile(r"#[^\n]*")
 _LARGEST = 2.0**53  # whole numbers up to here are exact
 
@@ -42,6 +43,18 @@ class Table:
         words = map(str.split, _COMMENT.sub("", text).split("\n"))
         self._lines = [(number, line) for number, line in enumerate(words, 1) if line]
         self._used = 0
+
+    @property
+    def counts(self) -> str:
+        """What a comment of ours says that the files hold, or nothing."""
+        found = [" ".join(words[1:]) for words in self._comments if words[:1] == [COUNTS]]
+        return found[0] if found and [OURS] in self._comments else ""
+
+    def finish(self) -> None:
+        """Raise if there is more to take."""
+        if self:
+            self._used += 1
+            raise self.error("there are more lines than the counts say: is a count wrong?")
 
     def __bool__(self) -> bool:
         """Whether there is more to take."""

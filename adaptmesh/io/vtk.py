@@ -28,11 +28,13 @@ import numpy as np
 
 from ..errors import FormatError
 from .content import Array, Content
+from .counts import check_stated, stated
 from .files import text_of
 from .located import located
 from .vtk_grid import Grid, content_of, grid_of, is_ours, take_names
 from .vtk_legacy import LegacyFile
 
+_TITLE = "by adaptmesh, counts "
 _LONGEST_NAME = 255  # bytes, in VTK's own reader
 _PLAIN = "".join(chr(c) for c in range(33, 127) if chr(c) not in '"%')
 _POLYGONS = {
@@ -75,7 +77,7 @@ def encode(content: Content, *, binary: bool = True) -> bytes:
 
     return b"".join(
         [
-            b"# vtk DataFile Version 3.0\nby adaptmesh\n",
+            f"# vtk DataFile Version 3.0\n{_TITLE}{stated(content)}\n".encode(),
             b"BINARY\n" if binary else b"ASCII\n",
             b"DATASET UNSTRUCTURED_GRID\n",
             *arrays("", grid.fields),
@@ -113,6 +115,8 @@ def decode(data: bytes) -> Content:
     grid = _Reader(file).grid()
     content = content_of(grid)
     take_names(content, {name: a for name, a in grid.fields.items() if is_ours(name)})
+    if file.title.startswith(_TITLE):
+        check_stated(file.title.removeprefix(_TITLE), content)
     return content
 
 
@@ -133,6 +137,8 @@ class _Reader:
             keyword = words[0].upper()
             with located(keyword):
                 self._take(keyword, words)
+        if self._place and not self._arrays[self._place]:
+            raise FormatError(f"ends after {self._place} without an array: is it complete?")
         sections = [self._cells.get(s) for s in ("CELLS", *_POLYGONS)]
         cells = [c for c in sections if c is not None]
         ends = np.cumsum([0, *(len(vertices) for vertices, _ in cells)])
@@ -174,6 +180,8 @@ class _Reader:
         elif keyword == "LOOKUP_TABLE":  # colours
             file.numbers("float" if file.is_text else "unsigned_char", file.whole(words, 2), 4)
         elif keyword == "FIELD":
+            if self._cells and not self._place:
+                raise FormatError("follows the cells: a line CELL_DATA or POINT_DATA is missing")
             for _ in range(file.whole(words, 2)):
                 self._take_field()
         elif self._place:

@@ -24,7 +24,7 @@ KINDS = {
 _NOT_BLANK = re.compile(rb"\S")
 _EMPTY_LINE = re.compile(rb"\n[ \t]*\r?\n")
 _HEADER = re.compile(  # numbers and words of bounded length: a match takes linear time
-    rb"# vtk DataFile Version {1,9}\d{1,3}\.\d{1,3}[^\n]*\n[^\n]*\n"
+    rb"# vtk DataFile Version {1,9}\d{1,3}\.\d{1,3}[^\n]*\n([^\n]*)\n"
     rb"\s*(ASCII|BINARY)\s+DATASET\s+(\w{1,40})[^\n]*\n",
     re.IGNORECASE,
 )
@@ -38,8 +38,9 @@ class LegacyFile:
         header = _HEADER.match(data)
         if header is None:
             raise FormatError("has not the header of a legacy VTK file")
-        self.is_text = header[1].upper() == b"ASCII"
-        self.dataset = header[2].decode("ascii", "replace").upper()
+        self.title = header[1].decode("ascii", "replace").strip()
+        self.is_text = header[2].upper() == b"ASCII"
+        self.dataset = header[3].decode("ascii", "replace").upper()
         self._data = data
         self._at = header.end()
 

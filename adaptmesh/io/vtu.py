@@ -7,6 +7,7 @@ FieldData, and of a file with several pieces it reads only the cells of the last
 from __future__ import annotations
 
 import base64
+import re
 import warnings
 import zlib
 from collections.abc import Mapping
@@ -18,12 +19,15 @@ import numpy as np
 from ..errors import FormatError, FormatWarning
 from .bounded import Allowance, read_xml
 from .content import Array, Content, check_vertices
+from .counts import check_stated, stated
 from .vtk_grid import Grid, content_of, grid_of, is_ours, take_names
 from .vtu_arrays import TYPES, VtuArrays
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
+_COUNTS = re.compile(rb"<!-- adaptmesh counts (\{[ -;=?-~]{1,500}\}) -->")
+_HEAD = 1000  # bytes in which the counts are
 _TYPE_NAMES = {dtype: name for name, dtype in TYPES.items()}
 
 
@@ -44,6 +48,7 @@ def encode(content: Content) -> bytes:
     }
     lines = [
         '<?xml version="1.0" encoding="utf-8"?>',
+        f"<!-- adaptmesh counts {stated(content)} -->",
         '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" '
         'header_type="UInt64" compressor="vtkZLibDataCompressor">',
         "<UnstructuredGrid>",
@@ -102,6 +107,9 @@ def decode(data: bytes) -> Content:
         if is_ours(name := array.get("Name", ""))
     }
     take_names(content, fields)
+    said = _COUNTS.search(data, 0, _HEAD)
+    if said is not None:
+        check_stated(said[1].decode(), content)
     return content
 
 

@@ -28,6 +28,7 @@ import numpy as np
 from ..errors import FormatError, FormatWarning
 from .bounded import read_json, read_xml
 from .content import Array, Content, check_vertices, refuse_cells
+from .counts import check_stated, stated
 from .hdf5 import import_h5py
 from .periodic_sides import Rows, checked_rows
 from .xdmf_arrays import XdmfArrays
@@ -79,6 +80,7 @@ def encode(content: Content, arrays_name: str) -> tuple[bytes, bytes]:
         '<?xml version="1.0" encoding="utf-8"?>',
         '<Xdmf Version="3.0">',
         "<Domain>",
+        f'<Information Name="counts" Value={quoteattr(stated(content))}/>',
         _information("names", dict(content.names)),
         _information("region_names", dict(content.region_names)),
         *([_information("periodic", content.periodic)] if content.periodic else []),
@@ -173,6 +175,9 @@ def decode(data: bytes, folder: Path) -> Content:
     for grid in grids:
         if grid is not first:
             _take_tags(content, grid)
+    for information in domain.findall("Information"):
+        if information.get("Name") == "counts":
+            check_stated(information.get("Value", ""), content)
     return content
 
 

@@ -171,7 +171,7 @@ def test_files_that_are_missing_or_of_another_kind(folder):
     with pytest.raises(MetricError, match=r"bad.vtu: is cut short or not XML"):
         metrics.read(folder / "bad.vtu")
     (folder / "bad.msh").write_bytes(b"\0\1\2")
-    with pytest.raises(MetricError, match=r"bad.msh: a section"):
+    with pytest.raises(MetricError, match=r"bad.msh: does not start"):
         metrics.read(folder / "bad.msh")
     (folder / "a.sol").write_text(sol(SIZES, 1))
     with pytest.raises(MetricError, match="has the values itself"):

@@ -14,6 +14,7 @@ import pytest
 from reference.whole_files import WHOLE
 
 import adaptmesh as am
+import metrics
 from adaptmesh import io
 from adaptmesh.domain_io import OUTLINE_SUFFIXES
 from adaptmesh.errors import FormatWarning
@@ -121,7 +122,7 @@ def read_every_way(path):
     Raises whatever is no `AdaptmeshError`, and an `AssertionError` for one that does not name the
     file, or for what is read and is not valid.
     """
-    outcomes = [outcome(reader, path) for reader in readers_of(path.suffix)]
+    outcomes = [outcome(reader, path) for reader in readers_of(path)]
     return outcomes[0]
 
 
@@ -130,19 +131,47 @@ def outcome(reader, path):
         with warnings.catch_warnings(), little_time():
             warnings.simplefilter("error")
             warnings.simplefilter("ignore", FormatWarning)  # of what is passed over
+            warnings.simplefilter("ignore", DeprecationWarning)  # of libraries
             reader(path)
     except am.AdaptmeshError as error:
-        assert path.stem + "." in str(error), f"does not name the file: {error}"
+        name = path.parent.name if path.name in HISTORIES else f"{path.stem}."
+        assert name in str(error), f"does not name the file: {error}"
+        cause = error.__cause__
+        assert isinstance(cause, (am.AdaptmeshError, type(None))), f"unforeseen: {cause!r}"
         return "refused"
     return "read"
 
 
-def readers_of(suffix):
+def readers_of(path):
+    suffix = path.suffix
+    if path.name in HISTORIES:
+        return [HISTORIES[path.name]]
+    if suffix == ".mtr":
+        return [metrics.read]
     if suffix in (".sol", ".solb"):
         return [io.read_sol]
     if suffix in OUTLINE_SUFFIXES:
         return [read_domain, repaired]
-    return [read_mesh, io.read_fields, read_domain]
+    by_metrics = [metrics.read] if suffix in (".vtu", ".msh", ".mesh") else []
+    return [read_mesh, io.read_fields, read_domain, *by_metrics]
+
+
+def read_history(path):
+    found = am.History.load(path.parent)
+    str(found)
+    for iteration in found:
+        assert len(iteration.mesh.points) == iteration.n_points == len(iteration.metric)
+        assert iteration.mesh.validate().ok
+        assert all(np.isfinite(values).all() for values in iteration.fields.values())
+
+
+def read_history_in_time(path):
+    found = am.TransientHistory.load(path.parent)
+    str(found)
+    assert all(interval.mesh.validate().ok for interval in found.intervals)
+
+
+HISTORIES = {"history.json": read_history, "transient.json": read_history_in_time}
 
 
 def read_mesh(path):

@@ -330,6 +330,36 @@ def shapefile(folder):
     return folder / "a.shp"
 
 
+# --------------------------------------------------------------------------------------- histories
+
+
+def history(folder):
+    mesh = am.generate(am.Domain.rectangle(0, 0, 1, 1), 0.5)
+    solve = lambda m: {"u": m.points[:, 0] ** 2, "v": m.points[:, 1]}  # noqa: E731
+    am.adapt_loop(solve, mesh, target_vertices=40, max_iterations=1, save=folder)
+    return folder / "history.json"
+
+
+def history_in_time(folder):
+    mesh = am.generate(am.Domain.rectangle(0, 0, 1, 1), 0.5)
+    am.transient_loop(
+        lambda m, u, start, end: u,
+        lambda m: m.points[:, 0] ** 2,
+        mesh,
+        [0, 1],
+        sweeps=1,
+        target_vertices=40,
+        save=folder,
+    )
+    return folder / "transient.json"
+
+
+def sizes_of_bamg(folder):
+    io.write(folder / "a.mesh", wheel())
+    (folder / "a.mtr").write_text("7 1\n" + "0.5\n" * 7)
+    return folder / "a.mtr"
+
+
 WHOLE = {
     ".vtu": {
         "ours": of_mesh("a.vtu"),
@@ -366,5 +396,8 @@ WHOLE = {
     ".svg": {"shapes": of_bytes("a.svg", SVG)},
     ".dxf": {"R12": dxf, "R2000": dxf_of_splines},
     ".shp": {"polygons": shapefile},
+    ".mtr": {"sizes": sizes_of_bamg},
+    "history": {"two fields": history},
+    "history in time": {"one field": history_in_time},
 }
 """Ways to write each suffix, by name; each takes a folder and gives the path of the file."""
