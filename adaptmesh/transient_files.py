@@ -57,6 +57,8 @@ def load(folder: Path, domain: Domain | None) -> TransientHistory:
     with damage_named(path):
         content = read_list(path, VERSION)
         counts = content.counts("intervals")
+        if 0 in counts:
+            raise FormatError(f"sweep {counts.index(0)} has no intervals")
         options = content.texts("options") if "options" in content else {}
     names = [_names(path, sweep, count) for sweep, count in enumerate(counts)]
     sweeps = tuple(tuple(_interval(folder / name, domain) for name in sweep) for sweep in names)
@@ -118,9 +120,12 @@ def _interval(path: Path, domain: Domain | None) -> Interval:
         times = take(arrays, "times")
         if times.ndim != 1 or times.dtype != np.float64:
             raise FormatError(f"the times are {times.dtype} of shape {times.shape}")
+        start, end = notes.real("start"), notes.real("end")
+        if not -np.inf < start < end < np.inf:
+            raise FormatError(f"an interval from {start:g} to {end:g}")
         return Interval(
-            start=notes.real("start"),
-            end=notes.real("end"),
+            start=start,
+            end=end,
             mesh=mesh,
             times=times,
             seconds=notes.record("seconds", Seconds),

@@ -251,7 +251,7 @@ def test_names_are_no_markup(folder):
 
 
 def test_lists_of_histories_in_time(tmp_path):
-    for intervals in ([10**17], [10**30], ["x"], [[]], [1], {}, None, [-1]):
+    for intervals in ([10**17], [10**30], ["x"], [[]], [1], {}, None, [-1], [0]):
         content = {"version": 1, "intervals": intervals}
         (tmp_path / "transient.json").write_text(json.dumps(content))
         refused(read_history_in_time, tmp_path, "transient.json")
