@@ -13,6 +13,7 @@ from .chords import Chords
 from .domain import Domain
 from .edge_lengths import measure_edges, sampler_of
 from .errors import BudgetError
+from .line_rounding import nearest_to_lines
 from .periodic import frozen_pieces, tied_chords, tied_cuts
 from .run_cuts import TURN, RunParts, surroundings_of, unit_chords
 from .spans import spans_of
@@ -140,6 +141,7 @@ def cut_outline(domain: Domain, field: ControlSpace, most_points: int) -> Outlin
     cuts, piece = sampler.cut()
     piece = free[piece].astype(np.int32)
     ties = _ties(domain, kept, vertices, pieces)
+    cuts = nearest_to_lines(cuts, vertices[pieces[:, 0]], vertices[pieces[:, 1]], piece)
     if len(ties):
         cuts, piece = tied_cuts(vertices, pieces, cuts, piece, ties)
     straight = Outline(
