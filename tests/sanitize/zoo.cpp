@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "adaptmesh/core/border_sweep.hpp"
 #include "adaptmesh/core/load.hpp"
 #include "adaptmesh/core/triangulate.hpp"
 #include "tests/sanitize/mesher.hpp"
@@ -157,6 +158,20 @@ void run_locate(const Input& input) {
     }
 }
 
+// The border of a mesh crosses itself nowhere, and one triangle lies on the left of each edge.
+void check_border(const Triangulation& mesh, const Input& input) {
+    std::vector<Segment> border;
+    for (const Triangle& t : mesh.triangles) {
+        for (int i = 0; i < 3; ++i) {
+            if (t.n[i] == NONE) border.push_back({t.v[(i + 1) % 3], t.v[(i + 2) % 3]});
+        }
+    }
+    NoPoll poll;
+    const BorderSweep found = sweep_border(input.points, border, poll);
+    require(found.first == NONE, input, "no two border edges cross");
+    for (Index layers : found.layers) require(layers == 1, input, "one triangle inside an edge");
+}
+
 void run_triangulate(const Input& input) {
     NoPoll poll;
     const ConstrainedTriangulation out =
@@ -171,6 +186,7 @@ void run_triangulate(const Input& input) {
     require(border == boundary, input, "the border is the boundary edges");
     require(locked == 2 * (out.sub_edges.size() - boundary), input,
             "the other sub-edges are locked");
+    check_border(out.triangulation, input);
 }
 
 // The mesh, with one metric after the other from input to input: the constrained edges are there,
