@@ -10,6 +10,7 @@ using namespace nb::literals;
 namespace {
 
 using Ends = nb::ndarray<const double, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
+using Numbers = nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using EndSizes = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 
 // Calls visit(i, x, y) for all points, neighbours one soon after the other, so that what was found
@@ -43,6 +44,12 @@ nb::tuple nearest(const metrics::Segments& segments, Points points) {
         });
     }
     return nb::make_tuple(number.numpy(), share.numpy(), foot.numpy());
+}
+
+void prepare_rings(metrics::Segments& segments, Numbers left) {
+    require(left.shape(0) == segments.size(), "a number for each segment is needed");
+    nb::gil_scoped_release release;
+    segments.prepare_rings(left.data());
 }
 
 nb::object encloses(const metrics::Segments& segments, Points points) {
@@ -83,6 +90,8 @@ void bind_segments(nb::module_& m) {
         .def("__init__", &construct_segments, "ends"_a)
         .def("nearest", &nearest, "points"_a,
              "Segments (n,), shares of the way along them (n,), nearest points (n, 2).")
+        .def("prepare_rings", &prepare_rings, "left"_a,
+             "Before `encloses`: the lowest x of the ring of each segment, (n,).")
         .def("encloses", &encloses, "points"_a, "Whether points are inside closed rings, (n,).");
     nb::class_<metrics::Spreading>(m, "Spreading")
         .def("__init__", &construct_spreading, "segments"_a, "sizes"_a, "growth"_a)

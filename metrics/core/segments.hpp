@@ -52,14 +52,29 @@ class Segments {
         return foot(tree_.nearest(x, y, squared_distance, hint), x, y);
     }
 
+    // Makes ready for `encloses`, for segments of closed rings: `left` is the lowest x of the ring
+    // of each. What is left of a ring crosses an even number of its segments, and asks for none:
+    //
+    //      x -->   ring box:  [left ... ]      without the bound, a row of many rings would be
+    //                                          asked one by one
+    void prepare_rings(const double* left) {
+        std::vector<Box> boxes(segments_.size());
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const Segment& s = segments_[i];
+            boxes[i].include(left[i], s.ay), boxes[i].include(s.bx, s.by);
+            boxes[i].include(s.ax, s.ay);
+        }
+        rings_ = BoxTree(boxes);
+    }
+
     // Whether an odd number of the segments cross the ray from (x, y) to the right: for the
     // segments of closed rings, whether the point is inside. Ends belong to what is above them.
     bool encloses(double x, double y) const {
         bool odd = false;
         const auto reached = [x, y](const Box& box) {
-            return box.y0 <= y && y < box.y1 && x <= box.x1;
+            return box.y0 <= y && y < box.y1 && box.x0 <= x && x <= box.x1;
         };
-        tree_.matching(reached, [&](std::int32_t i) {
+        rings_.matching(reached, [&](std::int32_t i) {
             const Segment& s = segments_[i];
             const double rise = s.by - s.ay;
             const double side = (s.bx - s.ax) * (y - s.ay) - (x - s.ax) * rise;
@@ -93,7 +108,7 @@ class Segments {
     }
 
     std::vector<Segment> segments_;
-    BoxTree tree_;
+    BoxTree tree_, rings_;
 };
 
 // Sizes at the ends of segments, linear along them, that grow with the distance: at x the least of

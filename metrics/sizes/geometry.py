@@ -111,6 +111,9 @@ class Geometry:
         if largest > _LARGEST:
             raise MetricError(f"a coordinate of {largest:.3g} is too large: its square overflows")
         self._search = _core.Segments(self.segments.reshape(-1, 4))
+        if self.is_polygonal:
+            left = [np.full(len(p.ends), p.ends[..., 0].min()) for p in pieces]
+            self._prepare_rings(np.concatenate(left))
         self._rounding = _ROUNDING * largest
         chords = np.repeat(np.diff(self.segments, axis=1), 2, axis=1)
         self._derivatives: Floats | None = None
@@ -127,16 +130,23 @@ class Geometry:
         self._tangents = tangents[:, 0]
         self._end_tangents = _end_tangents(tangents, self.vertices()[1])
 
+    def _prepare_rings(self, left: Floats) -> None:
+        """Make ready for `contains`, from the lowest x of the ring of each segment."""
+        self._left = left
+        self._search.prepare_rings(left)
+
     def __getstate__(self) -> dict[str, Any]:
         return {
             "segments": self.segments,
-            "is_polygonal": self.is_polygonal,
+            "left": self._left if self.is_polygonal else None,
             "derivatives": self._derivatives,
         }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self._build([Pieces(state["segments"], state["derivatives"])])
-        self.is_polygonal = state["is_polygonal"]
+        self.is_polygonal = state["left"] is not None
+        if self.is_polygonal:
+            self._prepare_rings(state["left"])
 
     def nearest(self, points: ArrayLike) -> Nearest:
         """What is nearest to points (n, 2)."""

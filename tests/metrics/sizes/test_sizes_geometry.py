@@ -1,6 +1,7 @@
 """Distances, nearest points, directions and insides, against a slow search over all segments."""
 
 import pickle
+import time
 from types import SimpleNamespace
 
 import numpy as np
@@ -221,3 +222,48 @@ def test_pickled():
     again = pickle.loads(pickle.dumps(geometry))
     points = RNG.uniform(-1, 2, (100, 2))
     np.testing.assert_array_equal(again.signed_distance(points), geometry.signed_distance(points))
+
+
+def odd_crossings(rings, points):
+    """Whether points are in an odd number of rings, by the winding of each about each point."""
+    out = np.zeros(len(points), int)
+    for ring in rings:
+        w = ring[None] - points[:, None]
+        angle = np.arctan2(w[..., 1], w[..., 0])
+        turn = np.diff(angle, axis=1, append=angle[:, :1])
+        turn = (turn + np.pi) % (2 * np.pi) - np.pi
+        out += np.rint(turn.sum(axis=1) / (2 * np.pi)).astype(int) % 2
+    return out % 2 == 1
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_inside_of_many_rings_that_overlap(scale):
+    rng = np.random.default_rng(0)
+    t = np.sort(rng.uniform(0, 2 * np.pi, (60, 12)), axis=1)
+    radii = rng.uniform(0.02, 0.3, (60, 12, 1))
+    rings = rng.uniform(0, 1, (60, 1, 2)) + radii * np.stack([np.cos(t), np.sin(t)], axis=-1)
+    points = rng.uniform(-0.2, 1.2, (2000, 2))
+    geometry = Geometry.polygon(scale * rings[0], [scale * ring for ring in rings[1:]])
+    right = odd_crossings(rings, points)
+    np.testing.assert_array_equal(geometry.contains(scale * points), right)
+    copied = pickle.loads(pickle.dumps(geometry))
+    np.testing.assert_array_equal(copied.contains(scale * points), right)
+
+
+def test_time_grows_little_with_the_number_of_polygons():
+    """What is asked for a point grows with the logarithm of the number of rings around it."""
+    points = np.random.default_rng(1).random((4000, 2))
+
+    def seconds(n):
+        t = np.linspace(0, 2 * np.pi, 13)[:-1]
+        ring = 0.3 / np.sqrt(n) * np.stack([np.cos(t), np.sin(t)], axis=1)
+        centres = np.random.default_rng(0).random((n, 1, 2))
+        geometry = Geometry.polygon(centres[0] + ring, list(centres[1:] + ring))
+        best = np.inf
+        for _ in range(3):
+            start = time.process_time()
+            geometry.contains(points)
+            best = min(best, time.process_time() - start)
+        return best
+
+    assert seconds(4096) < 4 * seconds(256)  # with the square root of it, 4 and more
