@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrangement import first_of_equal
+from ..coincident import curves_once
 from ..curved import extent_of
 from ..curves import Curve, EllipticArc, Polyline
 from ..domain import Domain
 from ..errors import DomainError
+from ..faces import joined_lines, seeds_of
 from ..raw import Outline
+
+_SAMPLES = np.linspace(0, 1, 33)  # on each curve around a filled area
 
 JOINED = 1e-6
 """Ends of curves within this share of the extent are one: drawings hold rounded numbers."""
@@ -21,11 +27,15 @@ JOINED = 1e-6
 
 @dataclass
 class Drawing:
-    """Curves in the order of the file, and the numbers of those that bear each name."""
+    """Curves in the order of the file, and the numbers of those that bear each name.
+
+    Filled areas have a name, and the curves around them and around holes in them.
+    """
 
     path: Path
     curves: list[Curve] = field(default_factory=list)
     names: dict[str, list[int]] = field(default_factory=dict)
+    fills: list[tuple[str, list[Curve]]] = field(default_factory=list)
 
     def add(self, curve: Curve, name: str | None) -> None:
         if name:
@@ -35,7 +45,8 @@ class Drawing:
     @property
     def is_straight(self) -> bool:
         """Whether it holds straight lines only."""
-        return all(isinstance(curve, Polyline) for curve in self.curves)
+        is_filled = self.fills and not self.curves
+        return not is_filled and all(isinstance(curve, Polyline) for curve in self.curves)
 
     @property
     def join_tolerance(self) -> float:
@@ -43,7 +54,12 @@ class Drawing:
         return JOINED * extent_of(self.curves)
 
     def domain(self) -> Domain:
-        """What the curves enclose: inside is what an odd number of boundaries encloses."""
+        """What the curves enclose: inside is what an odd number of boundaries encloses.
+
+        If there are filled areas only, these are what is meshed.
+        """
+        if self.fills and not self.curves:
+            return filled_domain(self.fills)
         self._check_not_empty()
         return Domain.from_curves(self.curves, names=self.names, join_tolerance=self.join_tolerance)
 
@@ -68,6 +84,37 @@ class Drawing:
     def _check_not_empty(self) -> None:
         if not self.curves:
             raise DomainError("it draws no lines: there is nothing to mesh")
+
+
+def filled_domain(fills: Sequence[tuple[str, list[Curve]]]) -> Domain:
+    """Filled areas, each a region with its name; borders that two share are one line."""
+    import shapely
+
+    curves = [curve for _, around in fills for curve in around]
+    owner = np.repeat(np.arange(len(fills)), [len(around) for _, around in fills])
+    tolerance = JOINED * extent_of(curves)
+    kept, number = curves_once(curves, tolerance)
+    faces: dict[int, Any] = {}
+    groups: dict[str, list[int]] = {}
+    lines = joined_lines([curves[k].point(_SAMPLES) for k in kept], tolerance)
+    for k, (name, _) in enumerate(fills):
+        mine = sorted({number[j] for j in np.flatnonzero(owner == k).tolist()})
+        faces[k] = shapely.build_area(shapely.MultiLineString([lines[j] for j in mine]))
+        if faces[k].is_empty:
+            raise DomainError(f"the border of filled area {k} ({name!r}) is not closed")
+        groups.setdefault(name, []).append(k)
+    holes, regions = seeds_of(faces, groups)
+    first = {j: int(owner[k]) for k, j in reversed(list(enumerate(number)))}
+    names: dict[str, list[int]] = {}
+    for j in range(len(kept)):
+        names.setdefault(fills[first[j]][0], []).append(j)
+    return Domain.from_curves(
+        [curves[k] for k in kept],
+        names=names,
+        holes=holes,
+        regions=regions,
+        join_tolerance=tolerance,
+    )
 
 
 def affine_arc(

@@ -1,13 +1,16 @@
 """DXF: drawings of CAD programs, read by ezdxf.
 
 Lines, arcs, circles, ellipses, polylines (with bulges) and splines of the model space become
-curves that bear the name of their layer; blocks are taken apart. Annotation (text, dimensions,
-hatches, ...) and lone points are no outlines and are passed over; any other entity is refused, as
-is what does not lie in a plane z = constant. Layers that are off or frozen count as not drawn.
+curves that bear the name of their layer; blocks are taken apart. Filled areas (HATCH, MPOLYGON,
+SOLID, TRACE) are regions named by their layer if nothing else is drawn; else they are passed over
+with a word, as they lie in the lines that are drawn. Annotation (text, dimensions, ...) and lone
+points are no outlines and are passed over; any other entity is refused, as is what does not lie in
+a plane z = constant. Layers that are off or frozen count as not drawn.
 """
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -17,7 +20,7 @@ from numpy.typing import NDArray
 
 from ..curves import Arc, BSpline, Circle, Curve, EllipticArc, Line
 from ..curves.checks import checked_point
-from ..errors import AdaptmeshError, FormatError
+from ..errors import AdaptmeshError, FormatError, FormatWarning
 from ..io.files import read_bytes
 from ..io.located import located, refusing
 from .drawing import Drawing
@@ -26,7 +29,7 @@ Floats = NDArray[np.float64]
 
 _ANNOTATION = """
 TEXT MTEXT ATTRIB ATTDEF DIMENSION ARC_DIMENSION LARGE_RADIAL_DIMENSION LEADER MLEADER MULTILEADER
-TOLERANCE HATCH MPOLYGON WIPEOUT IMAGE VIEWPORT POINT XLINE RAY LIGHT SUN ACAD_TABLE UNDERLAY
+TOLERANCE WIPEOUT IMAGE VIEWPORT POINT XLINE RAY LIGHT SUN ACAD_TABLE UNDERLAY
 PDFUNDERLAY DWFUNDERLAY DGNUNDERLAY OLE2FRAME ACAD_PROXY_ENTITY
 """
 
@@ -45,8 +48,19 @@ def read_dxf(path: Path) -> Drawing:
     with refusing(f"{path} is damaged, or no DXF file"), located(path):
         for entity in _entities(ezdxf, path):
             with located(_words(entity), AdaptmeshError), refusing("is damaged"):
-                for curve in _curves(entity):
+                curves = list(_curves(entity))
+                if entity.dxftype() in _FILLS:
+                    drawing.fills.append((entity.dxf.layer, curves))
+                    continue
+                for curve in curves:
                     drawing.add(curve, entity.dxf.layer)
+    if drawing.fills and drawing.curves:
+        warnings.warn(
+            f"{path}: {len(drawing.fills)} filled areas ({', '.join(_FILLS)}) are passed over: "
+            "lines are drawn, too, and are what bounds the domain",
+            FormatWarning,
+            stacklevel=4,
+        )
     return drawing
 
 
@@ -221,6 +235,64 @@ def _spline(entity: Any) -> Iterator[Curve]:
     yield BSpline(control, tool.degree, np.array(tool.knots(), float), weights)
 
 
+def _solid(entity: Any) -> Iterator[Curve]:
+    """A filled triangle or quadrilateral, whose last two corners are exchanged."""
+    dxf = entity.dxf
+    corners = [dxf.vtx0, dxf.vtx1, dxf.get("vtx3", dxf.vtx2), dxf.vtx2]
+    ring = _flat(corners)
+    yield from _bulged(np.column_stack([ring, np.zeros(4)]), True)
+
+
+def _hatch(entity: Any) -> Iterator[Curve]:
+    """The borders of a filled area."""
+    for path in entity.paths:
+        if hasattr(path, "vertices"):
+            rows = np.array([(x, y, bulge) for x, y, bulge in path.vertices], float)
+            yield from _bulged(rows.reshape(-1, 3), True)
+            continue
+        for edge in path.edges:
+            kind = type(edge).__name__
+            if kind not in _EDGES:
+                raise FormatError(f"has a border of the kind {kind}, which cannot be read")
+            yield from _EDGES[kind](edge)
+
+
+def _line_edge(edge: Any) -> Iterator[Curve]:
+    a, b = _flat([edge.start, edge.end])
+    if (a != b).any():
+        yield Line(a, b)
+
+
+def _arc_edge(edge: Any) -> Iterator[Curve]:
+    (centre,) = _flat([edge.center])
+    start, end = np.radians([edge.start_angle, edge.end_angle])
+    yield Arc(centre, edge.radius, start, _after(start, end))
+
+
+def _ellipse_edge(edge: Any) -> Iterator[Curve]:
+    centre, axis = _flat([edge.center, edge.major_axis])
+    a = float(np.hypot(*axis))
+    rotation = float(np.arctan2(axis[1], axis[0]))
+    start = float(edge.start_param)
+    yield EllipticArc(
+        centre, (a, a * edge.ratio), rotation, start, _after(start, float(edge.end_param))
+    )
+
+
+def _spline_edge(edge: Any) -> Iterator[Curve]:
+    tool = edge.construction_tool()
+    weights = np.array(tool.weights(), float) if len(tool.weights()) else None
+    yield BSpline(_flat(tool.control_points), tool.degree, np.array(tool.knots(), float), weights)
+
+
+_EDGES = {
+    "LineEdge": _line_edge,
+    "ArcEdge": _arc_edge,
+    "EllipseEdge": _ellipse_edge,
+    "SplineEdge": _spline_edge,
+}
+
+
 def _flat(points: Any) -> Floats:
     """x and y of points in one plane z = constant."""
     xyz = np.array([tuple(p) + (0.0,) * (3 - len(tuple(p))) for p in points], float).reshape(-1, 3)
@@ -238,7 +310,12 @@ _READERS = {
     "LWPOLYLINE": _lwpolyline,
     "POLYLINE": _polyline,
     "SPLINE": _spline,
+    "HATCH": _hatch,
+    "MPOLYGON": _hatch,
+    "SOLID": _solid,
+    "TRACE": _solid,
 }
+_FILLS = ("HATCH", "MPOLYGON", "SOLID", "TRACE")
 
 
 def _import_ezdxf() -> Any:

@@ -21,13 +21,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..coincident import curves_once
 from ..curved import extent_of
 from ..curves import Arc, BSpline, Curve, Line
 from ..domain import Domain
 from ..drawings.drawing import JOINED, affine_arc
 from ..errors import FormatError, FormatWarning
-from ..runs import places_of
-from .faces import seeds_of
+from ..faces import joined_lines, seeds_of
 from .gmsh_script import MENTIONED, SafeScript, safe_script
 
 Floats = NDArray[np.float64]
@@ -42,7 +42,6 @@ FLAT = 1e-9
 """Share of the extent by which heights of a plane domain may differ."""
 
 _SAMPLES = np.linspace(0, 1, 33)  # on each curve, for polygons in which seeds are found
-_MIDDLE = np.array([0.25, 0.5, 0.75])  # where curves with the same ends are compared
 
 
 def is_installed() -> bool:
@@ -138,10 +137,17 @@ class _Model:
         inside = {t for s in self.surfaces.values() for t in s["curves_inside"]}
         bounding = {t for s in self.surfaces.values() for t in s["curves"]}
         used = sorted(inside | bounding) if self.surfaces else sorted(self.curves)
-        number_of, kept = self._merged(used)
-        curves = [self.curves[t] for t in kept]
+        found = [self.curves[t] for t in used]
+        kept, number = curves_once(found, JOINED * extent_of(found))
+        number_of = dict(zip(used, number, strict=True))
+        curves = [found[k] for k in kept]
         names, tags = self._names(number_of)
-        faces = {tag: self._face(tag) for tag in self.surfaces}
+        samples = [c.point([0, 1] if c.is_straight else _SAMPLES) for c in curves]
+        lines = joined_lines(samples, JOINED * extent_of(curves))
+        faces = {
+            tag: self._face(tag, [lines[k] for k in sorted({number_of[t] for t in s["curves"]})])
+            for tag, s in self.surfaces.items()
+        }
         groups = {name: members for dim, _, name, members in self.groups if dim == 2}
         holes, regions = seeds_of(faces, groups) if faces else ("nesting", {})
         points = {t for s in self.surfaces.values() for t in s["points_inside"]}
@@ -155,26 +161,6 @@ class _Model:
             points=[self.points[t] for t in sorted(points)],
             join_tolerance=JOINED * extent_of(curves),
         )
-
-    def _merged(self, used: list[int]) -> tuple[dict[int, int], list[int]]:
-        """The number of each curve, where curves that lie on one another are one."""
-        curves = [self.curves[t] for t in used]
-        tolerance = JOINED * extent_of(curves)
-        ends = np.array([end for c in curves for end in (c.start, c.end)])
-        places = places_of(ends, tolerance).reshape(-1, 2)
-        number_of: dict[int, int] = {}
-        kept: list[int] = []
-        alike: dict[tuple[int, ...], list[int]] = {}
-        for tag, curve, place in zip(used, curves, places.tolist(), strict=True):
-            same = alike.setdefault(tuple(sorted(place)), [])
-            twin = next((t for t in same if _coincide(curve, self.curves[t], tolerance)), None)
-            if twin is None:
-                same.append(tag)
-                number_of[tag] = len(kept)
-                kept.append(tag)
-            else:
-                number_of[tag] = number_of[twin]
-        return number_of, kept
 
     def _names(self, number_of: Mapping[int, int]) -> tuple[dict[str, list[int]], dict[str, int]]:
         """Curves of each physical group; of one in several groups, a name for all of these."""
@@ -198,29 +184,16 @@ class _Model:
             )
         return names, {name: tag for name, tag in tags.items() if name in names}
 
-    def _face(self, tag: int) -> Any:
+    def _face(self, tag: int, lines: list[Floats]) -> Any:
         """A surface as a polygon of samples: what an odd number of its boundaries encloses."""
         import shapely
 
-        curves = [self.curves[t] for t in self.surfaces[tag]["curves"]]
-        lines = [np.array([c.start, c.end]) if c.is_straight else c.point(_SAMPLES) for c in curves]
         if not lines:
             raise FormatError(f"{self.path}: surface {tag} has no boundary")
-        ends = np.array([line[k] for line in lines for k in (0, -1)])
-        place = places_of(ends, JOINED * float(np.ptp(np.concatenate(lines), axis=0).max()))
-        _, first = np.unique(place, return_index=True)
-        for k, line in enumerate(lines):
-            line[0], line[-1] = ends[first[place[2 * k]]], ends[first[place[2 * k + 1]]]
         face = shapely.build_area(shapely.MultiLineString(lines))
         if face.is_empty:
             raise FormatError(f"{self.path}: the boundary of surface {tag} is not closed")
         return face
-
-
-def _coincide(a: Curve, b: Curve, tolerance: float) -> bool:
-    """Whether curves with the same ends are the same, perhaps backwards."""
-    p, q = a.point(_MIDDLE), b.point(_MIDDLE)
-    return bool((np.abs(p - q) <= tolerance).all() or (np.abs(p - q[::-1]) <= tolerance).all())
 
 
 def _check_flat(path: Path, said: Mapping[str, Any]) -> None:

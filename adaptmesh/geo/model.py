@@ -25,11 +25,11 @@ from ..curves import Arc, Bezier, BSpline, Curve, EllipticArc, Line
 from ..domain import Domain
 from ..drawings.drawing import JOINED
 from ..errors import DomainError, FormatError
+from ..faces import seeds_of
 from ..io.files import read_text
 from ..runs import places_of
 from . import by_gmsh
 from .expressions import NotReadError
-from .faces import seeds_of
 from .script import CURVES, Definition, Script, script_of
 
 Floats = NDArray[np.float64]

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import DomainError
+from .errors import DomainError
+from .runs import places_of
 
 Floats = NDArray[np.float64]
 
@@ -53,3 +54,14 @@ def inner_points(area: Any) -> list[Floats]:
     parts = shapely.get_parts(area)
     inner = shapely.point_on_surface(parts[~shapely.is_empty(parts)])
     return list(shapely.get_coordinates(inner))
+
+
+def joined_lines(lines: Sequence[Floats], tolerance: float) -> list[Floats]:
+    """The same lines, where ends within the tolerance are made equal."""
+    ends = np.array([line[k] for line in lines for k in (0, -1)])
+    place = places_of(ends, tolerance)
+    _, first = np.unique(place, return_index=True)
+    out = [line.copy() for line in lines]
+    for k, line in enumerate(out):
+        line[0], line[-1] = ends[first[place[2 * k]]], ends[first[place[2 * k + 1]]]
+    return out
