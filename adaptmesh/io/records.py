@@ -22,6 +22,7 @@ Column = tuple[str, int]
 Array = NDArray[Any]
 
 _LONGEST_NUMBER = 64
+_LONGEST_ROW = 1 << 30  # bytes
 
 
 class Cursor(Protocol):
@@ -84,6 +85,9 @@ class BinaryCursor:
         self.at = 0
 
     def rows(self, count: int, *columns: Column) -> list[Array]:
+        size = sum(int(code[1:]) * width for code, width in columns)
+        if size > _LONGEST_ROW:
+            raise FormatError(f"rows of {size} bytes: a count is wrong")
         record = np.dtype(
             [(str(i), self.order + code, (w,)) for i, (code, w) in enumerate(columns)]
         )

@@ -622,3 +622,11 @@ def test_a_view_of_few_rows_is_not_spread_over_many_nodes(file):
     mesh = f"$Nodes\n5000\n{nodes}$EndNodes\n$Elements\n1\n1 2 0 1 2 101\n$EndElements\n"
     path = file("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + mesh + view)
     refused(am.io.read_fields, path, "MiB")
+
+
+def test_rows_longer_than_any():
+    from adaptmesh.io.records import BinaryCursor
+
+    for width in (1 << 29, 1 << 40, 10**17):
+        with pytest.raises(am.FormatError, match="a count is wrong"):
+            BinaryCursor(bytes(100)).rows(0, ("f8", width))
