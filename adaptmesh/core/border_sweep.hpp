@@ -48,7 +48,7 @@ struct SweptEdge {
 
 class BorderSweeper {
   public:
-    // The points are distinct, and the edges join different ones.
+    // The edges join different points. Two points in one place count as edges that meet.
     BorderSweeper(const std::vector<Point>& points, const std::vector<Segment>& edges)
         : points_(points), order_(Below{this}) {
         for (const Segment& e : edges) {
@@ -76,6 +76,10 @@ class BorderSweeper {
         for (std::size_t i = 0, steps = 0; i < events.size() && found_.first == NONE; ++steps) {
             if (steps % POLL_EVERY == 0) poll();
             const Index v = events[i].first;
+            if (i > 0 && !is_left_of(points_[events[i - 1].first], points_[v])) {
+                report(events[i - 1].second, events[i].second);  // two points in one place
+                break;
+            }
             ending.clear(), starting.clear();
             for (; i < events.size() && events[i].first == v; ++i) {
                 const Index e = events[i].second;

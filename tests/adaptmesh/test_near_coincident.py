@@ -92,6 +92,18 @@ def test_of_cuts_that_correspond_both_are_made_or_none():
         assert not faults(domain, mesh)
 
 
+def test_editing_one_border_onto_another_is_noticed():
+    """Two parts that are less than any number apart: their edited sides coincide."""
+    left = [(0, 0), (1.0587497352553412, 0), (1.0531660965682903, 2), (0, 2)]
+    right = [(1.0587497352553412, 5e-324), (2, 0), (2, 2), (1.0531660965685123, 2.0000000000000013)]
+    sides = [(k + i, k + (i + 1) % 4) for k in (0, 4) for i in range(4)]
+    domain = am.Domain([*left, *right], sides)
+    coarse, fine = [0.8984174, 0.36243094, 0.14846945], [10.99378288, 4.76189228, 10.08878014]
+    mesh = am.generate(domain, lambda x: np.tile(coarse, (len(x), 1)))
+    again = am.adapt(mesh, lambda x: np.tile(fine, (len(x), 1)), keep=True)
+    assert not faults(domain, again)
+
+
 # --- the oracle itself -------------------------------------------------------------------------
 
 
