@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .mesh import Mesh
 
 SOLUTION_SUFFIXES = (".sol", ".solb")
-RASTER_SUFFIXES = (".tif", ".tiff", ".vrt", ".asc", ".nc", ".img")
+RASTER_SUFFIXES = (".tif", ".tiff", ".asc", ".nc", ".grd")
 
 
 class Request:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -20,6 +21,13 @@ _X_NAMES = ("x", "lon", "longitude", "easting")
 _Y_NAMES = ("y", "lat", "latitude", "northing")
 # Attributes in which arrays from files say what marks cells without a value.
 _MARKERS = ("_FillValue", "missing_value", "nodata")
+# Formats of GDAL that hold their values themselves. Others, such as VRT, name files and servers.
+_DRIVERS = (
+    "GTiff", "AAIGrid", "GSAG", "GSBG", "GS7BG", "netCDF", "XYZ", "USGSDEM", "DTED", "SRTMHGT",
+    "BT", "GTX", "PNG", "JP2OpenJPEG", "EHdr", "ENVI",
+)  # fmt: skip
+_UNPACKED = 2**28  # bytes that any raster may take
+_UNPACKED_PER_BYTE = 100
 # A point this far beyond the border, relative to the size of the raster, is on it by rounding.
 _BORDER = 1e-9
 # Sizes larger than so many extents of the raster are fill values: 1e20, 9.97e36, 1e38, 1.8e308.
@@ -131,21 +139,28 @@ class Raster(ControlSpace):
         Raises
         ------
         MetricError
-            If rasterio is not installed, the file cannot be read, or the raster is rotated.
+            If rasterio is not installed, the file cannot be read, or the raster is rotated. Of the
+            formats of GDAL those are read that hold their values themselves, not in other files or
+            on servers; and no raster is unpacked to more than 100 times its file and 256 MiB.
         """
+        path = Path(path)
+        _refuse_indirect(path)
         try:
             import rasterio
         except ImportError as error:
             raise MetricError(
-                f"{os.fspath(path)} cannot be read without rasterio: python -m pip install rasterio"
+                f"{path} cannot be read without rasterio: python -m pip install rasterio"
             ) from error
         try:
             with rasterio.open(path) as file:
+                if file.driver not in _DRIVERS:
+                    raise MetricError(f"{path}: {file.driver} is none of {', '.join(_DRIVERS)}")
+                _refuse_bomb(path, file.width * file.height * np.dtype(file.dtypes[0]).itemsize)
                 values, affine, marker = file.read(band, masked=True), file.transform, file.nodata
         except (rasterio.errors.RasterioError, IndexError) as error:
-            raise MetricError(f"{os.fspath(path)} cannot be read: {error}") from error
+            raise MetricError(f"{path} cannot be read: {error}") from error
         if affine.b != 0 or affine.d != 0:
-            raise MetricError(f"{os.fspath(path)} is rotated or sheared: warp it to be north-up")
+            raise MetricError(f"{path} is rotated or sheared: warp it to be north-up")
         rows, columns = values.shape
         options.setdefault("no_data", marker)
         x = affine.c + affine.a * (np.arange(columns) + 0.5)
@@ -205,6 +220,26 @@ class Raster(ControlSpace):
         rows, columns = self.sizes.shape
         (x0, x1), (y0, y1) = self._x_edges[[0, -1]].tolist(), self._y_edges[[0, -1]].tolist()
         return f"<Raster: {rows} x {columns} on [{x0:g}, {x1:g}] x [{y0:g}, {y1:g}]>"
+
+
+def _refuse_indirect(path: Path) -> None:
+    """Raise MetricError for what is no file, such as a URL, and for lists of other files."""
+    if not path.is_file():
+        raise MetricError(f"{path} cannot be read: there is no such file")
+    with path.open("rb") as file:
+        start = file.read(256).lstrip(b"\xef\xbb\xbf \t\r\n")[:1]
+    if start in (b"<", b"{"):
+        raise MetricError(f"{path} cannot be read: it is text that names other files or servers")
+
+
+def _refuse_bomb(path: Path, n_bytes: int) -> None:
+    """Raise MetricError if a raster would take much more memory than its file has bytes."""
+    bound = max(_UNPACKED, _UNPACKED_PER_BYTE * path.stat().st_size)
+    if n_bytes > bound:
+        raise MetricError(
+            f"{path}: expected at most {bound:,} bytes of values for a file of its size, got a "
+            f"raster of {n_bytes:,}; write it without compression if it is meant so"
+        )
 
 
 def _of_data_array(data: Any) -> tuple[Any, Any, Any, list[float]]:

@@ -155,18 +155,20 @@ def test_a_data_array_brings_its_coordinates_in_either_order():
         Raster(data, EXTENT)
 
 
-def test_without_rasterio(monkeypatch):
+def test_without_rasterio(monkeypatch, tmp_path):
+    (tmp_path / "size.tif").write_bytes(b"II")
     monkeypatch.setitem(sys.modules, "rasterio", None)
     with pytest.raises(
         MetricError, match=r"size.tif cannot be read without rasterio: .*pip install"
     ):
-        Raster.read("size.tif")
+        Raster.read(tmp_path / "size.tif")
 
 
 class FakeFile:
     """What rasterio.open gives: row 0 at the top if e < 0."""
 
-    nodata = 5.0
+    nodata, driver, dtypes = 5.0, "GTiff", ("float64",)
+    height, width = np.shape(TABLE)
 
     def __init__(self, a, b, c, d, e, f, table=TABLE):
         self.transform = SimpleNamespace(a=a, b=b, c=c, d=d, e=e, f=f)
@@ -192,19 +194,21 @@ class FakeFile:
         FakeFile(-1, 0, 13, 0, -1, 2, TABLE[:, ::-1]),
     ],
 )
-def test_read_any_way_up(monkeypatch, file):
+def test_read_any_way_up(monkeypatch, file, tmp_path):
+    path = tmp_path / "size.tif"
+    path.write_bytes(b"II")
     errors = SimpleNamespace(RasterioError=OSError)
     monkeypatch.setitem(
-        sys.modules, "rasterio", SimpleNamespace(open=lambda path: file, errors=errors)
+        sys.modules, "rasterio", SimpleNamespace(open=lambda _: file, errors=errors)
     )
-    field = Raster.read("size.tif", fill=50)
+    field = Raster.read(path, fill=50)
     points = [[10.5, 1.5], [12.5, 1.5], [10.5, 0.5], [11.5, 0.5]]
     np.testing.assert_allclose(sizes(field, points), [1, 3, 4, 50])
     with pytest.raises(MetricError, match="band index 2"):
-        Raster.read("size.tif", 2)
+        Raster.read(path, 2)
     file.transform.b = 0.1
     with pytest.raises(MetricError, match="rotated"):
-        Raster.read("size.tif")
+        Raster.read(path)
 
 
 def test_read_a_geotiff(tmp_path):
@@ -224,6 +228,31 @@ def test_read_a_geotiff(tmp_path):
         np.testing.assert_allclose(sizes(field, [[10.5, 1.5], [12.5, 1.5]]), [1, 3])
     with pytest.raises(MetricError, match=r"none.tif cannot be read"):
         Raster.read(tmp_path / "none.tif")
+
+
+def test_a_raster_reads_no_other_file_and_no_bomb(tmp_path):
+    rasterio = pytest.importorskip("rasterio")
+    options = {"driver": "GTiff", "count": 1, "dtype": "float32"}
+    options["transform"] = rasterio.Affine(1, 0, 10, 0, -1, 2)
+    secret, bomb = tmp_path / "other" / "secret.tif", tmp_path / "bomb.tif"
+    secret.parent.mkdir()
+    with rasterio.open(secret, "w", height=2, width=2, **options) as file:
+        file.write(np.ones((2, 2), np.float32), 1)
+    source = f"<SimpleSource><SourceFilename>{secret}</SourceFilename></SimpleSource>"
+    band = f'<VRTRasterBand dataType="Float32" band="1">{source}</VRTRasterBand>'
+    (tmp_path / "a.vrt").write_text(
+        f'<VRTDataset rasterXSize="2" rasterYSize="2">{band}</VRTDataset>'
+    )
+    (tmp_path / "a.tif").write_text((tmp_path / "a.vrt").read_text())
+    for name in ("a.vrt", "a.tif", f"/vsizip/{tmp_path}/a.zip", "https://localhost/a.tif"):
+        with pytest.raises(MetricError, match="cannot be read"):
+            Raster.read(tmp_path / name)
+    sparse = {"sparse_ok": True, "tiled": True, "compress": "deflate"}
+    with rasterio.open(bomb, "w", height=100_000, width=100_000, **options, **sparse):
+        pass
+    assert bomb.stat().st_size < 10_000_000
+    with pytest.raises(MetricError, match=r"expected at most .* bytes of values"):
+        Raster.read(bomb)
 
 
 FILLS = [1e20, 1e38, 9.969209968386869e36, 3.4028235e38, 1.7976931348623157e308, 2.0e9]
