@@ -16,7 +16,7 @@ from .chains import vertices_at
 from .cleaned import with_edges_once
 from .domain import Domain
 from .frozen import frozen_domain
-from .generate import generate
+from .generate import MAX_VERTICES, generate, graded_within_budget
 from .local import Edited, Editing, edited
 from .mesh import Mesh
 from .outline import check_is_mesh
@@ -35,11 +35,12 @@ def adapt(
     mesh: Mesh,
     metric: Any,
     *,
+    gradation: float | None = None,
     keep: bool = False,
     frozen: Iterable[str] = (),
     straight_tolerance: float | None = None,
     placement: str = "front",
-    max_vertices: int = 5_000_000,
+    max_vertices: int = MAX_VERTICES,
     progress: Progress | None = None,
 ) -> Mesh:
     """Fit a mesh to a metric, given at its vertices or as a function.
@@ -54,6 +55,8 @@ def adapt(
     metric : array_like, number, callable, or control space
         Values at the vertices: sizes (n,), packed metrics (n, 3) = (m11, m12, m22), or tensors
         (n, 2, 2); or anything else that `generate` takes.
+    gradation : float, optional
+        As in `generate`: sizes grow by at most this factor from one unit edge to the next.
     keep : bool, optional
         False: the domain is meshed again, and no vertex but its corners is kept. True: the mesh is
         edited where it does not fit the metric, around edges that are not unit, and all else stays
@@ -86,6 +89,8 @@ def adapt(
         )
     domain = mesh.domain or Domain.of_mesh(mesh, straight_tolerance=straight_tolerance)
     field = control_space_on(mesh, metric)
+    if gradation is not None:
+        field = graded_within_budget(domain, field, gradation, max_vertices)
     meshed = frozen_domain(domain, mesh, frozen) if frozen else domain
 
     def again() -> Mesh:

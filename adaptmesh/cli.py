@@ -21,9 +21,14 @@ import typer
 
 from .cli_arguments import (
     Bounds,
+    Clean,
+    Drawn,
+    Frozen,
+    Gradation,
     HeldAgainst,
     Json,
     MaxVertices,
+    Merge,
     MeshFile,
     Metric,
     MetricField,
@@ -34,18 +39,30 @@ from .cli_arguments import (
     Placement,
     Quiet,
     Show,
+    Simplify,
     Size,
+    StraightTolerance,
     Title,
     Tolerance,
 )
-from .cli_metric import Request
+from .cli_files import (
+    check_folder,
+    check_outputs,
+    cleaned,
+    field_of,
+    fields_for,
+    is_outline,
+    outline_and_mesh,
+)
+from .cli_metric import Request, graded
 from .cli_output import EXIT_BAD, Speaker, neat_errors, show_warnings_neatly, write
 
 if TYPE_CHECKING:
     from metrics import ControlSpace
 
-    from .domain import Domain
     from .mesh import Mesh
+
+OUTLINED = ("mesh", "region")  # what --show may be for an outline
 
 app = typer.Typer(
     name="adaptmesh",
@@ -88,6 +105,7 @@ def generate(
     size: Size = None,
     metric: Metric = None,
     metric_field: MetricField = None,
+    gradation: Gradation = None,
     plot: Picture = None,
     max_vertices: MaxVertices = None,
     placement: Placement = None,
@@ -95,14 +113,8 @@ def generate(
         bool, typer.Option("--repair", help="Repair the domain first, and say what was done.")
     ] = False,
     tolerance: Tolerance = None,
-    simplify: Annotated[
-        float | None,
-        typer.Option(
-            min=0.0,
-            metavar="SHARE",
-            help="Leave out detail of the outline smaller than this share of the size, e.g. 0.1.",
-        ),
-    ] = None,
+    simplify: Simplify = None,
+    straight_tolerance: StraightTolerance = None,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
@@ -111,18 +123,21 @@ def generate(
         import adaptmesh as am
 
         speaker = Speaker(quiet, as_json)
-        _check_outputs(output, plot)
+        check_outputs(output, plot)
         if tolerance is not None and not repair:
             raise typer.BadParameter("--tolerance is that of --repair")
+        if straight_tolerance is not None and (repair or is_outline(domain)):
+            raise typer.BadParameter("--straight-tolerance is for the border of a mesh")
         request = Request(size, metric, metric_field)
         request.refuse_empty()
-        if repair or _is_outline(domain):
+        if repair or is_outline(domain):
             request.refuse_without_mesh()
-        outline, carrier = _outline_and_mesh(domain, repair, tolerance, speaker)
+        outline, carrier = outline_and_mesh(domain, repair, tolerance, straight_tolerance, speaker)
         control = request.control_space(carrier)
         if simplify is not None:
             outline, dropped = am.simplify(outline, control, share=simplify)
             speaker.say(dropped)
+        control = graded(outline, control, gradation, max_vertices)
         predicted = am.predict(outline, control)
         speaker.say(f"predicted: about {round(predicted):,} vertices")
         speaker.note(predicted_vertices=predicted)
@@ -138,12 +153,17 @@ def adapt(
     size: Size = None,
     metric: Metric = None,
     metric_field: MetricField = None,
+    gradation: Gradation = None,
     plot: Picture = None,
     max_vertices: MaxVertices = None,
     placement: Placement = None,
     keep: Annotated[
         bool, typer.Option("--keep", help="Edit the mesh where it does not fit, keep the rest.")
     ] = False,
+    frozen: Frozen = None,
+    clean: Clean = False,
+    merge: Merge = None,
+    straight_tolerance: StraightTolerance = None,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
@@ -152,15 +172,19 @@ def adapt(
         import adaptmesh as am
 
         speaker = Speaker(quiet, as_json)
-        _check_outputs(output, plot)
+        check_outputs(output, plot)
         if keep and placement is not None:
             raise typer.BadParameter("--placement is that of a new mesh: leave it out, or --keep")
         request = Request(size, metric, metric_field)
         request.refuse_empty()
-        old = am.read(mesh)
-        control = request.control_space(old)
+        read = am.read(mesh)
+        old = cleaned(read, clean, merge, speaker)
+        outline = am.Domain.of_mesh(old, straight_tolerance=straight_tolerance)
+        control = request.control_space(read, old)
+        control = graded(outline, control, gradation, max_vertices)
         with _meshing(speaker, max_vertices, placement) as options:
-            new = am.adapt(old, control, keep=keep, **options)
+            old = replace(old, domain=outline)
+            new = am.adapt(old, control, keep=keep, frozen=frozen or (), **options)
         if new.kept is not None:
             speaker.note(kept_vertices=int((new.kept >= 0).sum()))
         _deliver(new, control, output, plot, speaker)
@@ -214,7 +238,7 @@ def repair(
         speaker = Speaker(quiet, as_json)
         if output.suffix.lower() not in GEOJSON_SUFFIXES:
             raise typer.BadParameter(f"--output ends in {' or '.join(GEOJSON_SUFFIXES)}")
-        _check_folder(output)
+        check_folder(output)
         clean, repairs = am.repair(domain, tolerance)
         speaker.say(repairs)
         write_geojson(output, clean)
@@ -228,7 +252,7 @@ def repair(
     epilog="Example: adaptmesh plot wing.vtu --show length --size '0.01 + 0.1*y' -o wing.png"
 )
 def plot(
-    mesh: MeshFile,
+    mesh: Drawn,
     output: Annotated[
         Path,
         typer.Option("--output", "-o", metavar="PNG", dir_okay=False, help="Picture to write."),
@@ -247,7 +271,10 @@ def plot(
     bounds: Bounds = None,
     title: Title = None,
 ) -> None:
-    """Draw a mesh: its triangles, quality, edge lengths, sizes, regions, or a field."""
+    """Draw a mesh: its triangles, quality, edge lengths, sizes, regions, or a field.
+
+    Of an outline, points and sides are drawn with their numbers.
+    """
     with neat_errors():
         import adaptmesh as am
 
@@ -258,19 +285,20 @@ def plot(
             raise typer.BadParameter("give one of --show and --field")
         if bounds is not None and not (bounds[0] < bounds[2] and bounds[1] < bounds[3]):
             raise typer.BadParameter("--bounds X0 Y0 X1 Y1: expected X0 < X1 and Y0 < Y1")
-        _check_outputs(picture=output)
-        drawn = am.read(mesh)
-        control = None if request.is_empty else request.control_space(drawn)
-        colours = show.value if field is None else _field(mesh, field)
-        am.plot(
-            drawn,
-            control,
-            show=colours,
-            ellipses=ellipses,
-            path=output,
-            bounds=bounds,
-            title=title,
-        )
+        check_outputs(picture=output)
+        look: Any = {"path": output, "bounds": bounds, "title": title}
+        if is_outline(mesh):
+            if field is not None or ellipses or not request.is_empty or show.value not in OUTLINED:
+                raise typer.BadParameter(
+                    f"{mesh} is an outline, drawn with --show mesh or region, without a field or "
+                    "metric: generate a mesh to see more"
+                )
+            am.plot(am.read_domain(mesh), show=show.value, **look)
+        else:
+            drawn = am.read(mesh)
+            control = None if request.is_empty else request.control_space(drawn)
+            colours = show.value if field is None else field_of(mesh, field)
+            am.plot(drawn, control, show=colours, ellipses=ellipses, **look)
         write(f"wrote {output}")
 
 
@@ -278,14 +306,21 @@ def plot(
 def convert(
     source: MeshFile,
     target: Annotated[Path, typer.Argument(metavar="OUT", dir_okay=False, help="Mesh to write.")],
+    clean: Clean = False,
+    merge: Merge = None,
+    fields: Annotated[
+        bool, typer.Option("--fields/--no-fields", help="Whether to write the fields, too.")
+    ] = True,
 ) -> None:
-    """Write a mesh in another format, told by the suffix."""
+    """Write a mesh and its fields in another format, told by the suffix."""
     with neat_errors():
         import adaptmesh as am
 
-        _check_outputs(target)
-        mesh = am.read(source)
-        am.write(target, mesh)
+        check_outputs(target)
+        read = am.read(source)
+        mesh = cleaned(read, clean, merge, Speaker())
+        carried = fields_for(source, read, mesh) if fields else {}
+        am.write(target, mesh, **carried)
         write(f"wrote {target}: {_counts(mesh)}")
 
 
@@ -307,61 +342,6 @@ def main() -> None:
     """Run the command line (the `adaptmesh` script)."""
     show_warnings_neatly()
     app(prog_name="adaptmesh")
-
-
-def _check_outputs(mesh: Path | None = None, picture: Path | None = None) -> None:
-    """Find out before the work, not after it, that the result cannot be put there."""
-    from .io.formats import format_of
-    from .plot.screen import check_path
-
-    for path in (mesh, picture):
-        if path is not None:
-            _check_folder(path)
-    if mesh is not None:
-        format_of(mesh)
-    if picture is not None:
-        check_path(picture)
-
-
-def _check_folder(path: Path) -> None:
-    if not path.parent.is_dir():
-        raise typer.BadParameter(f"there is no folder {str(path.parent)!r} for {path.name!r}")
-
-
-def _is_outline(path: Path) -> bool:
-    """Whether a file holds a domain but no mesh, by its suffix."""
-    from .domain_io import OUTLINE_SUFFIXES
-
-    return path.suffix.lower() in OUTLINE_SUFFIXES
-
-
-def _outline_and_mesh(
-    path: Path, repair: bool, tolerance: float | None, speaker: Speaker
-) -> tuple[Domain, Mesh | None]:
-    """The domain in a file, and the mesh that it is the domain of, if the file holds one."""
-    import adaptmesh as am
-
-    if repair:
-        domain, repairs = am.repair(path, tolerance)
-        speaker.say(repairs)
-        speaker.note(repairs=[vars(r) for r in repairs])
-        return domain, None
-    if _is_outline(path):
-        return am.read_domain(path), None
-    mesh = am.read(path)
-    return mesh.domain or am.Domain.of_mesh(mesh), mesh
-
-
-def _field(path: Path, name: str) -> Any:
-    """A field of real numbers in a mesh file."""
-    import adaptmesh as am
-
-    fields = am.read_fields(path)
-    plain = [key for key, values in fields.items() if values.ndim == 1]
-    if name not in plain:
-        known = ", ".join(map(repr, plain)) or "none"
-        raise typer.BadParameter(f"--field {name}: the file has no such field; it has {known}")
-    return fields[name]
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from enum import Enum
 from pathlib import Path
 from typing import Annotated
@@ -19,6 +20,18 @@ class Show(str, Enum):
     region = "region"
 
 
+def _checked_length(value: float | None) -> float | None:
+    if value is not None and not 0 <= value < math.inf:
+        raise typer.BadParameter(f"expected a finite number of at least 0, got {value:g}")
+    return value
+
+
+def _checked_gradation(value: float | None) -> float | None:
+    if value is not None and not 1 < value < math.inf:
+        raise typer.BadParameter(f"expected a finite factor above 1, such as 1.5, got {value:g}")
+    return value
+
+
 SIZE_HELP = (
     "Edge length asked for: a number, or an expression of x and y such as "
     "'0.01 + 0.1*hypot(x, y)'. It is parsed, never executed."
@@ -27,6 +40,15 @@ SIZE_HELP = (
 MeshFile = Annotated[
     Path,
     typer.Argument(metavar="MESH", exists=True, dir_okay=False, help="Mesh: .vtu .msh .mesh ..."),
+]
+Drawn = Annotated[
+    Path,
+    typer.Argument(
+        metavar="MESH",
+        exists=True,
+        dir_okay=False,
+        help="Mesh, or a file that holds an outline: its points and sides are then numbered.",
+    ),
 ]
 OutlineFile = Annotated[
     Path,
@@ -92,10 +114,56 @@ Placement = Annotated[
         help="How new points are placed, e.g. 'edges': along long edges.",
     ),
 ]
+Gradation = Annotated[
+    float | None,
+    typer.Option(
+        metavar="FACTOR",
+        callback=_checked_gradation,
+        help="Let sizes grow by at most this factor from one unit edge to the next, e.g. 1.5; they "
+        "are made smaller where they grow faster.",
+    ),
+]
 Tolerance = Annotated[
     float | None,
     typer.Option(
-        min=0.0, metavar="LENGTH", help="What is nearer is made one; 1e-9 of the extent if absent."
+        metavar="LENGTH",
+        callback=_checked_length,
+        help="What is nearer is made one; 1e-9 of the extent if absent.",
+    ),
+]
+Simplify = Annotated[
+    float | None,
+    typer.Option(
+        metavar="SHARE",
+        callback=_checked_length,
+        help="Leave out detail of the outline smaller than this share of the size, e.g. 0.1.",
+    ),
+]
+StraightTolerance = Annotated[
+    float | None,
+    typer.Option(
+        metavar="LENGTH",
+        callback=_checked_length,
+        help="How far off a straight line vertices on the border of the mesh may be without being "
+        "corners; by the digits of the coordinates if absent.",
+    ),
+]
+Clean = Annotated[
+    bool, typer.Option("--clean", help="Leave out points of the mesh that are in no triangle.")
+]
+Merge = Annotated[
+    float | None,
+    typer.Option(
+        metavar="LENGTH",
+        callback=_checked_length,
+        help="As --clean; and make vertices at most this far apart one, along the seams of blocks.",
+    ),
+]
+Frozen = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME",
+        help="A boundary or line whose edges stay as they are; may be given several times.",
     ),
 ]
 HeldAgainst = Annotated[
@@ -112,8 +180,8 @@ OffLines = Annotated[
     float | None,
     typer.Option(
         "--tolerance",
-        min=0.0,
         metavar="LENGTH",
+        callback=_checked_length,
         help="How far off the lines of the domain vertices may be; what rounding leaves if absent.",
     ),
 ]

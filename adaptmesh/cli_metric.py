@@ -15,6 +15,7 @@ from .errors import FormatError
 if TYPE_CHECKING:
     from metrics import ControlSpace
 
+    from .domain import Domain
     from .mesh import Mesh
 
 SOLUTION_SUFFIXES = (".sol", ".solb")
@@ -72,8 +73,11 @@ class Request:
                 "mesh as DOMAIN"
             )
 
-    def control_space(self, mesh: Mesh | None) -> ControlSpace:
-        """The control space; values of a solution belong to the vertices of `mesh`."""
+    def control_space(self, mesh: Mesh | None, cleaned: Mesh | None = None) -> ControlSpace:
+        """The control space; values of a solution belong to the vertices of `mesh`.
+
+        They are carried by what became of this mesh by `Mesh.cleaned`, if that is given.
+        """
         if self.size is not None:
             return self.size
         assert self.metric is not None
@@ -84,10 +88,10 @@ class Request:
 
             return metrics.Raster.read(self.metric)
         assert mesh is not None
-        return _of_solution(self.metric, mesh)
+        return _of_solution(self.metric, mesh, mesh if cleaned is None else cleaned)
 
 
-def _of_solution(path: Path, mesh: Mesh) -> ControlSpace:
+def _of_solution(path: Path, mesh: Mesh, carrier: Mesh) -> ControlSpace:
     import adaptmesh as am
     from metrics import Background
 
@@ -97,7 +101,9 @@ def _of_solution(path: Path, mesh: Mesh) -> ControlSpace:
             f"{path} has values for {len(values)} vertices, but the mesh has {len(mesh.points)}: "
             "they do not belong together"
         )
-    return Background(mesh.points, mesh.triangles, values)
+    if carrier is not mesh:
+        values = values[carrier.kept]
+    return Background(carrier.points, carrier.triangles, values)
 
 
 def _of_mesh_file(path: Path, field: str | None) -> ControlSpace:
@@ -125,3 +131,14 @@ def _chosen(
             + ("; choose by --metric-field" if able else "")
         )
     raise FormatError(f"{path}: no field {name!r} of sizes or metrics at the vertices; {found}")
+
+
+def graded(
+    domain: Domain, control: ControlSpace, gradation: float | None, max_vertices: int | None
+) -> ControlSpace:
+    """The metric that the mesh is made and measured for."""
+    if gradation is None:
+        return control
+    from .generate import MAX_VERTICES, graded_within_budget
+
+    return graded_within_budget(domain, control, gradation, max_vertices or MAX_VERTICES)

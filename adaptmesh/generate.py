@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 import metrics
+from metrics import ControlSpace
 
 from . import _core
 from .boundary import Outline, cut_outline
 from .budget import Budget, Progress
 from .domain import Domain
 from .domain_faults import too_near_text
-from .errors import DomainError
+from .errors import DomainError, MetricError
 from .mesh import Mesh
 from .optimisation import Optimisation, Settling, optimise, settle
 from .placement import (
@@ -34,6 +35,9 @@ Ints = NDArray[np.int32]
 # anisotropic metric it can take many passes of swaps until that is metric Delaunay. Most need two.
 OUTLINE_SWAPS = 200
 
+MAX_VERTICES = 5_000_000
+"""The largest mesh that is made if nothing else is said."""
+
 
 def generate(
     domain: Domain,
@@ -41,7 +45,7 @@ def generate(
     *,
     gradation: float | None = None,
     placement: str = "front",
-    max_vertices: int = 5_000_000,
+    max_vertices: int = MAX_VERTICES,
     progress: Progress | None = None,
 ) -> Mesh:
     """Mesh a domain so that all edges have unit length in a metric.
@@ -86,7 +90,7 @@ def generate(
     field = metrics.as_control_space(metric)
     if gradation is not None:
         report("grading the sizes", 0.0)
-        field = field.graded(domain, gradation)
+        field = graded_within_budget(domain, field, gradation, max_vertices)
 
     report("predicting the size", 0.0)
     samples = Samples(field)
@@ -107,6 +111,22 @@ def generate(
     mesher.compact()
     report("done", 1.0)
     return finished_mesh(domain, mesher, domain.region_of_label(mesher.labels()))
+
+
+def graded_within_budget(
+    domain: Domain, field: ControlSpace, gradation: float, max_vertices: int = MAX_VERTICES
+) -> ControlSpace:
+    """The field graded over a domain, unless its mesh would be too large even as it is.
+
+    Grading makes meshes, too, and sizes only smaller, so that what is too large is refused before.
+    """
+    if not 1 < gradation < np.inf:
+        raise MetricError(
+            f"gradation={gradation!r}: expected a finite factor above 1 from one unit edge to the "
+            "next; 1.5 is usual"
+        )
+    Budget(max_vertices, predict(domain, field)).check_prediction()
+    return field.graded(domain, gradation)
 
 
 def triangulate_outline(domain: Domain, outline: Outline) -> _core.Mesher:

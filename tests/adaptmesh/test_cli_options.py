@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from reference.transforms import SIMILARITIES
 from typer.testing import CliRunner
 
 import adaptmesh as am
@@ -114,6 +115,108 @@ def test_generate_simplifies_on_request_only(run):
     assert am.measure(after, 0.3).length_min > 0.5
 
 
+JUMP = "0.4 - 0.37*(x > 2)"
+
+
+@pytest.mark.parametrize("first", [("generate", "plate.geojson"), ("adapt", "plain.vtu")])
+def test_gradation_lets_sizes_grow_slowly(run, first):
+    worst = {}
+    for name, options in (("as asked", ()), ("graded", ("--gradation", "1.4"))):
+        said = done(run(*first, "-s", JUMP, "-o", "a.vtu", "--json", *options))
+        report = json.loads(said)["report"]
+        mesh = am.read("a.vtu")
+        assert am.validate(mesh) and report["unit_fraction"] > 0.9
+        worst[name] = am.measure(mesh, 1.0).quality_min
+    assert worst["graded"] > 0.3 > worst["as asked"]
+    too_many = run(*first, "-s", "0.01", "-o", "out.vtu", "--gradation", "2", "--max-vertices", 99)
+    assert too_many.exit_code == 1 and "max_vertices is 99" in too_many.stderr
+    for bad in ("1", "0.5", "nan", "inf"):
+        usage(run(*first, "-s", "1", "-o", "out.vtu", "--gradation", bad), "factor above 1")
+
+
+@pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
+def test_straight_tolerance_of_a_border_with_rounded_coordinates(run, transform):
+    mesh = am.generate(DOMAIN, 0.3)
+    rng = np.random.default_rng(2)
+    points = transform(mesh.points + rng.uniform(-1e-4, 1e-4, mesh.points.shape))
+    am.write("rounded.vtu", am.Mesh(points, mesh.triangles))
+    unit = np.sqrt(abs(np.linalg.det(transform([(1, 0), (0, 1)]) - transform([(0, 0)]))))
+    counts = {}
+    for command in (("adapt",), ("generate",)):
+        for options in ((), ("--straight-tolerance", repr(1e-3 * float(unit)))):
+            out = ("-s", repr(float(unit)), "-o", "a.vtu", "--json")
+            said = json.loads(done(run(*command, "rounded.vtu", *out, *options)))
+            counts[command + options[:1]] = said["vertices"]
+    assert counts["adapt", "--straight-tolerance"] == counts["generate", "--straight-tolerance"]
+    assert counts["adapt", "--straight-tolerance"] < 15 < counts["adapt",]
+    of_outline = ("generate", "plate.geojson", "-s", "1", "-o", "out.vtu")
+    usage(run(*of_outline, "--straight-tolerance", "1"), "is for the border of a mesh")
+
+
+def seam(transform):
+    """Two blocks with vertices twice along their seam, and a point in no triangle."""
+    left = am.generate(am.Domain.rectangle(0, 0, 1, 1), 0.4)
+    n = len(left.points)
+    points = np.concatenate([left.points, left.points * [-1, 1] + [2, 0], [(5, 5)]])
+    triangles = np.concatenate([left.triangles, left.triangles[:, ::-1] + n])
+    mesh = am.Mesh(transform(points), triangles)
+    return mesh if mesh.areas.min() > 0 else am.Mesh(mesh.points, triangles[:, ::-1])
+
+
+@pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
+def test_loose_and_double_points_are_cleaned_with_fields_and_metric(run, transform):
+    mesh = seam(transform)
+    unit = float(np.sqrt(mesh.areas.sum() / 2))
+    values = np.arange(len(mesh.points), dtype=float)
+    am.write("seam.mesh", mesh)
+    am.write_sol("seam.sol", np.full(len(mesh.points), 0.3 * unit))
+    am.write("seam.vtu", mesh, number=values, triangle_fields={"kind": mesh.triangles[:, 0] * 1.0})
+    assert run("check", "seam.vtu").exit_code == 1
+    done(run("convert", "seam.vtu", "clean.vtu", "--clean"))
+    assert len(am.read("clean.vtu").points) == len(mesh.points) - 1
+    merge = ("--merge", repr(1e-6 * unit))
+    assert "points left out or made one" in done(run("convert", "seam.vtu", "whole.vtk", *merge))
+    checks = json.loads(run("check", "whole.vtk", "--json").stdout)["checks"]
+    assert {c["name"] for c in checks if not c["ok"]} == {"border is constrained"}  # has no edges
+    whole, fields = am.read("whole.vtk"), am.read_fields("whole.vtk")
+    numbers = fields["number"].astype(int)
+    np.testing.assert_array_equal(whole.points, mesh.points[numbers])
+    np.testing.assert_array_equal(fields["kind"], mesh.triangles[:, 0])
+    done(run("adapt", "seam.mesh", "-m", "seam.sol", "-o", "new.vtu", *merge))
+    new = am.read("new.vtu")
+    assert am.validate(new) and new.areas.sum() == pytest.approx(2 * unit**2, rel=1e-6)
+    assert am.measure(new, 0.3 * unit).unit_fraction > 0.9
+    for bad in ("-1", "nan", "inf"):
+        usage(run("convert", "seam.vtu", "out.vtu", "--merge", bad), "at least 0")
+
+
+def test_convert_keeps_fields_unless_told_not_to(run):
+    mesh = am.read("plain.vtu")
+    fields = {"p": mesh.points[:, 0], "v": mesh.points, "kind": mesh.triangles[:, 0] * 1.0}
+    am.write("a.vtu", mesh, metric=size, **fields)
+    for suffix in (".vtu", ".vtk", ".msh", ".xdmf"):
+        done(run("convert", "a.vtu", f"b{suffix}"))
+        read = am.read_fields(f"b{suffix}")
+        assert read.keys() == {"metric", *fields}
+        for name, values in fields.items():
+            np.testing.assert_array_equal(read[name], values)
+    done(run("convert", "a.vtu", "c.vtu", "--no-fields"))
+    assert am.read_fields("c.vtu") == {}
+
+
+def test_frozen_edges_stay(run):
+    mesh = am.generate(DOMAIN.with_names({"base": [0]}), 0.3)
+    am.write("named.vtu", mesh)
+    done(run("adapt", "named.vtu", "-s", "0.1", "-o", "a.vtu", "--frozen", "base"))
+    edges = [
+        {tuple(sorted(map(tuple, m.points[e].tolist()))) for e in m.edges_named("base")}
+        for m in (mesh, am.read("a.vtu"))
+    ]
+    assert edges[0] == edges[1]
+    unknown = run("adapt", "named.vtu", "-s", "0.1", "-o", "out.vtu", "--frozen", "top")
+    assert unknown.exit_code == 1 and "'top'" in unknown.stderr and not Path("out.vtu").exists()
+
+
 def test_keep_edits_the_mesh(run):
     first = json.loads(done(run("generate", "plate.geojson", "-s", "0.2", "-o", "a.vtu", "--json")))
     kept = json.loads(done(run("adapt", "a.vtu", "-s", "0.2", "-o", "b.vtu", "--keep", "--json")))
@@ -139,9 +242,30 @@ def test_plot_of_a_field_with_bounds_and_title(run, monkeypatch):
     usage(run("plot", "carrier.vtu", *wrong, "-o", "out.png"), "X0 < X1")
 
 
+def test_plot_of_an_outline_numbers_its_points_and_sides(run, monkeypatch):
+    done(run("plot", "plate.geojson", "-o", "out.png"))
+    assert Path("out.png").stat().st_size > 1000
+    seen = []
+    monkeypatch.setattr(am, "plot", lambda drawn, **options: seen.append((drawn, options)))
+    done(run("plot", "plate.geojson", "--show", "region", "--title", "T", "-o", "b.png"))
+    ((drawn, options),) = seen
+    assert drawn == am.read_domain("plate.geojson")
+    assert (options["show"], options["title"], options["bounds"]) == ("region", "T", None)
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
+        ("generate", "plate.geojson", "-s", "1", "-o", "out.vtu", "--gradation", "1"),
+        ("generate", "plate.geojson", "-s", "1", "-o", "out.vtu", "--simplify", "nan"),
+        ("generate", "plate.geojson", "-s", "1", "-o", "out.vtu", "--straight-tolerance", "1"),
+        ("adapt", "plain.vtu", "-s", "1", "-o", "out.vtu", "--merge", "nan"),
+        ("check", "plain.vtu", "--tolerance", "nan"),
+        ("convert", "plain.vtu", "out.vtu", "--merge", "inf"),
+        ("repair", "plate.geojson", "--tolerance", "nan", "-o", "out.geojson"),
+        ("plot", "plate.geojson", "-s", "1", "-o", "out.png"),
+        ("plot", "plate.geojson", "--show", "quality", "-o", "out.png"),
+        ("plot", "plate.geojson", "--field", "a", "-o", "out.png"),
         ("generate", "plate.geojson", "-s", "0.1 +", "-o", "out.vtu"),
         ("generate", "plate.geojson", "-s", "1", "-o", "out.vtu", "--tolerance", "1"),
         ("generate", "plate.geojson", "-s", "1", "-o", "out.vtu", "--placement", "nowhere"),

@@ -124,7 +124,7 @@ def test_uniform_sizes_are_what_they_were():
 @pytest.mark.parametrize("bad", [1.0, 0.5, -2.0, np.nan, np.inf])
 def test_what_is_no_gradation(bad):
     domain = two_squares(SIMILARITIES[0])
-    with pytest.raises(am.MetricError, match="beta must be above 1"):
+    with pytest.raises(am.MetricError, match="finite factor above 1"):
         am.generate(domain, 0.1, gradation=bad)
     with pytest.raises(am.MetricError, match="beta must be above 1"):
         metrics.RegionSizes(domain, {"a": 0.4, "b": 0.02}, growth=bad)
