@@ -32,7 +32,7 @@ from .domain_input import (
 from .domain_names import domain_with_names, sides_of_domain, tags_of_sides
 from .errors import DomainError
 from .naming import Chosen, Selector, chosen_tags, split_names
-from .periodic import Motion, PeriodicPair, periodic_pair, with_pair
+from .periodic import Motion, PeriodicPair
 from .runs import points_on
 from .value import Value
 
@@ -198,6 +198,9 @@ class Domain(Value):
         from .ring_nesting import refuse_rings_out_of_place, rings_with_labels
 
         holes = () if holes is None else holes
+        if isinstance(holes, str) or not isinstance(holes, Iterable):
+            raise DomainError(f"holes={holes!r}: expected a sequence of rings, [ring]")
+        holes = list(holes)
         if is_collection(outer):
             if names is not None or len(holes):
                 raise DomainError("features have names and holes of their own: leave out yours")
@@ -431,15 +434,17 @@ class Domain(Value):
 
         In every mesh of it, by `generate` or `adapt`, each vertex on the first boundary has one on
         the second that a rigid motion carries it to; `Mesh.periodic_vertices` gives the pairs. Both
-        are cut for the finer of the two metrics.
+        are cut for the finer of the two metrics. Straight sides need not have the same corners: the
+        image of one that the other side lacks becomes a point of the domain there, after the last
+        one, and divides its segment.
 
         Parameters
         ----------
         first, second : str
             Names of boundaries, one the image of the other.
         translation : (dx, dy), optional
-            From the first to the second; if no motion is given, from the mean of the corners of
-            the one to that of the other.
+            From the first to the second; if no motion is given, from the box around the one to
+            that around the other.
         rotation : float, optional
             Instead, an angle in degrees, anticlockwise about `centre`.
         centre : (x, y)
@@ -451,6 +456,8 @@ class Domain(Value):
         DomainError
             A name is not known, or something on one boundary has no image on the other.
         """
+        from .periodic_corners import domain_with_pair
+
         if translation is not None and rotation is not None:
             raise DomainError("give a translation or a rotation, not both")
         motion = None
@@ -463,7 +470,7 @@ class Domain(Value):
                 raise DomainError(
                     f"{name!r} is periodic already, with {other.first!r} and {other.second!r}"
                 )
-        return with_pair(self, periodic_pair(self, first, second, motion, tolerance))
+        return domain_with_pair(self, first, second, motion, tolerance)
 
     def with_frozen(self, *names: str, segments: ArrayLike | None = None) -> Domain:
         """The same domain, where each segment of these names is one edge of every mesh.

@@ -31,7 +31,7 @@ def frozen_domain(domain: Domain, mesh: Mesh, names: Iterable[str]) -> Domain:
     out = build(domain, edges, rest).with_frozen(*names)
     out.corners_found = domain.corners_found
     for pair in domain.periodic:
-        tied = periodic_pair(out, pair.first, pair.second, pair.motion, None)
+        tied = periodic_pair(out, pair.first, pair.second, pair.motion, pair.tolerance)
         out.periodic = (*out.periodic, tied)
     return out
 

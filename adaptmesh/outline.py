@@ -17,7 +17,7 @@ from .invariants import local
 from .invariants.subject import Finding, Subject, edge_keys
 from .mesh import Mesh
 from .parts import hole_points, region_points, regions_beside
-from .periodic import periodic_pair, with_pair
+from .periodic_corners import domain_with_pair
 from .smoothed import smooth_curves
 from .straight_sides import Straightness, needed_corners
 
@@ -104,8 +104,7 @@ def _domain(
         frozen = is_required[curve_edges][domain.curved.segment_curves]
     domain.corners_found = straight.found(len(used), len(np.unique(edges)))
     for sides in mesh.periodic:
-        pair = periodic_pair(domain, sides.first, sides.second, sides.motion, None)
-        domain = with_pair(domain, pair)
+        domain = domain_with_pair(domain, sides.first, sides.second, sides.motion, None)
     return domain.with_frozen(segments=np.flatnonzero(frozen)) if frozen.any() else domain
 
 

@@ -92,6 +92,8 @@ class PeriodicPair(Value):
         Straight pieces of the domain, see `Domain.pieces`.
     runs : (r, 2) array of int
         Curved runs of the domain.
+    tolerance : float
+        How far images may be off.
     """
 
     first: str
@@ -99,6 +101,7 @@ class PeriodicPair(Value):
     motion: Motion
     pieces: Index
     runs: Index
+    tolerance: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,27 +120,39 @@ def with_pair(domain: Domain, pair: PeriodicPair) -> Domain:
     return out
 
 
-def periodic_pair(
-    domain: Domain, first: str, second: str, motion: Motion | None, tolerance: float | None
-) -> PeriodicPair:
-    """Find what belongs together; a `DomainError` names the first place that has no image."""
+def used_tolerance(domain: Domain, tolerance: float | None) -> float:
+    """How far images may be off, if it is given or not."""
+    if tolerance is None:
+        return TOLERANCE * float(np.ptp(domain.points, axis=0).max())
+    number = checked_number(tolerance, "tolerance")
+    if number < 0:
+        raise DomainError(f"tolerance={tolerance!r}: expected a distance, not less than 0")
+    return number
+
+
+def pair_motion(domain: Domain, first: str, second: str, motion: Motion | None) -> Motion:
+    """The motion that is given; if none is, the translation from one boundary to the other.
+
+    It is that of the boxes around them, whatever points divide their straight pieces.
+    """
     sides = [_side(domain, name) for name in (first, second)]
     if first == second:
         raise DomainError(f"{first!r} cannot be periodic with itself: give two names")
-    if tolerance is None:
-        tolerance = TOLERANCE * float(np.ptp(domain.points, axis=0).max())
-    if checked_number(tolerance, "tolerance") < 0:
-        raise DomainError(f"tolerance={tolerance!r}: expected a distance, not less than 0")
-    if motion is None:
-        shift = sides[1].places(domain).mean(axis=0) - sides[0].places(domain).mean(axis=0)
-        motion = Motion.translation(shift)
-    for what, at in (("straight pieces", 0), ("curves", 1)):
-        counts = [len(side[at]) for side in sides]
-        if counts[0] != counts[1]:
-            raise DomainError(
-                f"{first!r} has {counts[0]} {what} and {second!r} {counts[1]}: periodic boundaries "
-                "must have the same, one the image of the other"
-            )
+    for name, side in zip((first, second), sides, strict=True):
+        if not len(side.pieces) and not len(side.runs):
+            raise DomainError(f"no segment is named {name!r}: what should be periodic?")
+    if motion is not None:
+        return motion
+    boxes = [(p.min(axis=0), p.max(axis=0)) for p in (side.places(domain) for side in sides)]
+    (low, high), (to_low, to_high) = boxes
+    return Motion.translation(0.5 * ((to_low - low) + (to_high - high)))
+
+
+def periodic_pair(
+    domain: Domain, first: str, second: str, motion: Motion, tolerance: float
+) -> PeriodicPair:
+    """Find what belongs together; a `DomainError` names the first place that has no image."""
+    sides = [_side(domain, name) for name in (first, second)]
     pieces = _partners(
         [domain.points[domain.pieces[side.pieces]] for side in sides],
         motion,
@@ -155,7 +170,13 @@ def periodic_pair(
         motion,
         np.stack([sides[0].pieces, sides[1].pieces[pieces]], axis=1),
         np.stack([sides[0].runs, sides[1].runs[runs]], axis=1),
+        tolerance,
     )
+
+
+def side_pieces(domain: Domain, name: str) -> Index:
+    """The straight pieces that bear a name."""
+    return _side(domain, name).pieces
 
 
 class _Side(NamedTuple):
@@ -191,27 +212,43 @@ def _partners(
 
     Points may come in either order: that of a shape and the reverse.
     """
+    from scipy.spatial import KDTree
+
     first, second = shapes
+    _refuse_without_image(first, second, motion, tolerance, names)
+    _refuse_without_image(second, first, motion.inverse(), tolerance, names[::-1])
     if not len(first):
         return np.empty(0, np.intp)
-    images = motion(first.reshape(-1, 2)).reshape(first.shape)
-    off = np.minimum(
-        np.abs(images[:, None] - second).max(axis=(2, 3)),
-        np.abs(images[:, None] - second[:, ::-1]).max(axis=(2, 3)),
-    )
-    nearest = off.argmin(axis=1)
-    for k, j in enumerate(nearest):
-        if off[k, j] > tolerance:
-            (x, y), (u, v) = first[k, 0].tolist(), images[k, 0].tolist()
-            raise DomainError(
-                f"what begins at ({x:g}, {y:g}) on {names[0]!r} would be carried to ({u:g}, "
-                f"{v:g}), but nothing on {names[1]!r} lies there within {tolerance:g}: check the "
-                "motion"
-            )
+    either = np.concatenate([second, second[:, ::-1]]).reshape(2 * len(second), -1)
+    images = motion(first.reshape(-1, 2)).reshape(len(first), -1)
+    nearest = KDTree(either).query(images, p=np.inf)[1] % len(second)
     if len(np.unique(nearest)) < len(nearest):
         raise DomainError(f"two parts of {names[0]!r} are carried to the same part of {names[1]!r}")
     out: Index = nearest
     return out
+
+
+def _refuse_without_image(
+    first: Floats, second: Floats, motion: Motion, tolerance: float, names: tuple[str, str]
+) -> None:
+    """Raise a `DomainError` if one of the first shapes is carried to none of the second."""
+    from scipy.spatial import KDTree
+
+    if not len(first):
+        return
+    off = np.full(len(first), np.inf)
+    images = motion(first.reshape(-1, 2)).reshape(first.shape)
+    if len(second):
+        either = np.concatenate([second, second[:, ::-1]]).reshape(2 * len(second), -1)
+        off = KDTree(either).query(images.reshape(len(first), -1), p=np.inf)[0]
+    if off.max() > tolerance:
+        k = int(np.flatnonzero(off > tolerance)[0])
+        ends = [f"({x:.10g}, {y:.10g})" for x, y in (*first[k, [0, -1]], *images[k, [0, -1]])]
+        raise DomainError(
+            f"what goes from {ends[0]} to {ends[1]} on {names[0]!r} would be carried to {ends[2]} "
+            f"and {ends[3]}, but nothing on {names[1]!r} has its ends there within {tolerance:g}: "
+            "check the motion, and that both sides have the same corners"
+        )
 
 
 def frozen_pieces(domain: Domain) -> NDArray[np.bool_]:
@@ -244,7 +281,8 @@ def tied_cuts(
     pairs : (k, 4) array of int
         Two pieces, and which ends of theirs correspond: pieces[i, a] to pieces[j, b].
     """
-    groups = [cuts[piece == p] for p in range(len(pieces))]
+    order = np.argsort(piece, kind="stable")
+    groups = np.split(cuts[order], np.searchsorted(piece[order], np.arange(1, len(pieces))))
     for i, j, a, b in pairs.tolist():
         source, target = ((i, a), (j, b)) if len(groups[i]) >= len(groups[j]) else ((j, b), (i, a))
         start, end = (points[pieces[source[0], k]] for k in (source[1], 1 - source[1]))

@@ -1,8 +1,11 @@
 """Periodic boundaries get vertices that correspond, in every mesh."""
 
+import time
+
 import numpy as np
 import pytest
 from reference.periodic import assert_periodic, by, sector, wave, wavy_channel
+from reference.transforms import TRANSFORMS
 
 import adaptmesh as am
 from adaptmesh.curves import Line
@@ -95,10 +98,74 @@ def test_what_does_not_correspond_is_named():
         square.with_periodic("left", "bottom", rotation=np.inf)
     quarter = square.with_periodic("left", "bottom", rotation=-90, centre=(0, 0), tolerance=1e-9)
     assert quarter.periodic[0].first == "left"
-    divided = am.Domain(
-        [(0, 0), (1, 0), (1, 1), (0, 1), (0, 0.5)],
-        [(0, 1), (1, 2), (2, 3), (3, 0)],
-        names={"left": [3], "right": [1]},
+    bent = am.Domain.polygon(
+        [(0, 0), (1, 0), (1.1, 0.5), (1, 1), (0, 1)], names={"left": [4], "right": [1, 2]}
     )
-    with pytest.raises(DomainError, match="2 straight pieces"):
-        divided.with_periodic("left", "right")
+    with pytest.raises(DomainError, match=r"from \(0, 1\) to \(0, 0\) on 'left' would be"):
+        bent.with_periodic("left", "right", translation=(1, 0))
+    with pytest.raises(DomainError, match="no segment is named 'wall'"):
+        bent_with_empty_name().with_periodic("wall", "right")
+
+
+def bent_with_empty_name():
+    return am.Domain.polygon([(0, 0), (1, 0), (1, 1)], names={"wall": [], "right": [1]})
+
+
+@pytest.mark.parametrize("transform", TRANSFORMS, ids=str)
+@pytest.mark.parametrize("frozen", [(), (5,)])
+def test_corners_of_one_side_divide_the_other(transform, frozen):
+    """As a repair leaves them: other corners on each side, and a crack that ends on one."""
+    square = [(0, 0), (0.5, 0), (1, 0), (1, 0.3), (1, 0.8), (1, 1), (0, 1), (0, 0.25)]
+    points = transform([*square, (0.4, 0.6)])
+    segments = [(k, (k + 1) % 8) for k in range(8)] + [(4, 8)]
+    names = {"bottom": [0, 1], "right": [2, 3, 4], "top": [5], "left": [6, 7]}
+    domain = am.Domain(points, segments, names=names, tags={"left": 7})
+    domain = domain.with_frozen(segments=[1]) if frozen else domain
+    motion = {"translation": transform([1, 0]) - transform([0, 0])} if frozen else {}
+    both = domain.with_periodic("left", "right", **motion).with_periodic("top", "bottom")
+    assert len(both.points) == 9 + 3 + 1 and both.names == domain.names
+    assert both.area == pytest.approx(domain.area, rel=1e-9)
+    assert (both.segment_tags[:9] == domain.segment_tags).all()
+    assert both.segment_is_frozen.sum() == len(frozen)
+    mesh = am.generate(both, lambda x: transform.scale * sizes(np.abs(transform.inverse(x))))
+    for again in (False, True):
+        if again:
+            mesh = am.adapt(mesh, 0.1 * transform.scale)
+        mesh.validate().raise_if_invalid()
+        for first, second in (("left", "right"), ("top", "bottom")):
+            pairs = mesh.periodic_vertices()[first, second]
+            for name, column in ((first, 0), (second, 1)):
+                assert set(pairs[:, column]) == set(mesh.edges_named(name).ravel().tolist())
+            shift = np.ptp(mesh.points[pairs[:, 1]] - mesh.points[pairs[:, 0]], axis=0)
+            assert shift.max() < 1e-9 * transform.scale + 8 * np.spacing(np.abs(points).max())
+
+
+def test_the_motion_found_does_not_depend_on_points_between():
+    """As many corners on both sides, at other heights; it was found from their mean."""
+    ring = [(0, 0), (1, 0), (1, 0.5), (1, 1), (0, 1), (0, 0.25)]
+    domain = am.Domain.polygon(ring, names={"left": [4, 5], "right": [1, 2]})
+    pair = domain.with_periodic("left", "right").periodic[0]
+    assert pair.motion.shift.tolist() == [1, 0] and len(pair.pieces) == 3
+
+
+def test_a_pair_survives_a_file_though_corners_are_dropped_there(tmp_path):
+    ring = [(0, 0), (1, 0), (1, 1), (0, 1), (0, 0.5), (0.5, 0.5)]
+    segments = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0), (4, 5)]
+    domain = am.Domain(ring, segments, names={"left": [3, 4], "right": [1]})
+    mesh = am.generate(domain.with_periodic("left", "right"), 0.2)
+    am.write(tmp_path / "cell.msh", mesh)
+    again = am.adapt(am.read(tmp_path / "cell.msh"), 0.1)
+    assert_periodic(again, "left", "right", by(1, 0))
+
+
+def test_thousands_of_pieces_take_time_in_proportion():
+    seconds = {}
+    for n in (4000, 16000):
+        x = np.linspace(0, 1, n)
+        ring = np.concatenate([np.c_[x, 0 * x], np.c_[x[::-1], 0 * x + 1]])
+        names = {"b": list(range(n - 1)), "t": list(range(n, 2 * n - 1))}
+        domain = am.Domain.polygon(ring, names=names)
+        start = time.process_time()
+        domain.with_periodic("b", "t")
+        seconds[n] = time.process_time() - start
+    assert seconds[16000] < 10 * max(seconds[4000], 0.1)  # in n squared, 16 times: 100 s
