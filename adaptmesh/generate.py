@@ -88,6 +88,7 @@ def generate(
         raise ValueError(f"placement={placement!r} is none of {', '.join(map(repr, PLACEMENTS))}")
     report = progress or (lambda stage, fraction: None)
     field = metrics.as_control_space(metric)
+    field(domain.points)  # a corner where it is no metric is named itself, not a point near it
     if gradation is not None:
         report("grading the sizes", 0.0)
         field = graded_within_budget(domain, field, gradation, max_vertices)

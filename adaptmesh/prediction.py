@@ -35,7 +35,6 @@ def predict(domain: Domain, metric: Any) -> int:
     """
     check_is_domain(domain)
     field = metrics.as_control_space(metric)
-    field(domain.points)  # a corner where it is no metric is named itself, not a point near
     polygon = _inscribed(domain, field)
     complexity = metrics.complexity(polygon.points, polygon.triangles, field).value
     boundary = metrics.edge_lengths(polygon.points, polygon.border, field).sum()
