@@ -11,7 +11,7 @@ from .bamg import read_bamg_geometry
 from .coverage import domain_of_shapes
 from .domain import Domain
 from .drawings import Drawing, read_dxf, read_svg
-from .errors import DomainError, FormatWarning
+from .errors import DomainError, FormatError, FormatWarning
 from .geo import read_geo
 from .geojson import read_geojson
 from .io.located import located, only_our_errors
@@ -101,7 +101,13 @@ def read_raw(path: str | os.PathLike[str]) -> Domain | Outline | Drawing | list[
 
 
 def _domain_of_mesh_file(path: Path) -> Domain:
-    from .io import read
+    from .io import FORMATS, read
+
+    if path.suffix.lower() not in FORMATS:
+        raise FormatError(
+            f"the extension {path.suffix!r} is not known; known are those of outlines, "
+            f"{', '.join(OUTLINE_SUFFIXES)}, and of meshes, {', '.join(FORMATS)}"
+        )
 
     mesh = read(path)
     return Domain.of_mesh(mesh) if mesh.domain is None else mesh.domain

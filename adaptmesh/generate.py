@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -121,7 +122,7 @@ def graded_within_budget(
 
     Grading makes meshes, too, and sizes only smaller, so that what is too large is refused before.
     """
-    if not 1 < gradation < np.inf:
+    if not (isinstance(gradation, Real) and 1 < gradation < np.inf):
         raise MetricError(
             f"gradation={gradation!r}: expected a finite factor above 1 from one unit edge to the "
             "next; 1.5 is usual"

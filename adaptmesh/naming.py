@@ -170,6 +170,9 @@ def nearest(*points: ArrayLike) -> Selector:
 def facing(direction: ArrayLike, within: float = 30.0) -> Selector:
     """The sides of the border that face a direction, as a value of ``names=``.
 
+    Sides of holes belong to the border, too, and face into their hole: where that is not meant,
+    choose by a function of points or by `nearest`.
+
     Parameters
     ----------
     direction : (dx, dy)

@@ -18,6 +18,8 @@ import metrics
 from metrics import ControlSpace
 from metrics.measure import edge_lengths, mesh_edges
 
+from .place_text import place_text
+
 if TYPE_CHECKING:
     from .mesh import Mesh
 
@@ -109,7 +111,8 @@ class Reasons:
             if _key(a, b) in self._constrained and (length := self._length(a, b)) < SHORTEST:
                 return Reason(
                     Cause.CONSTRAINT,
-                    f"the segment from {self._at(a)} to {self._at(b)} is {length:.3g} units long",
+                    f"the segment from {self._at(a, b)} to {self._at(b, a)} is {length:.3g} units "
+                    "long",
                 )
         return None
 
@@ -135,8 +138,8 @@ class Reasons:
                 if angle < SHARPEST_UNIT:
                     return Reason(
                         Cause.SHARP_ANGLE,
-                        f"at {self._at(v)} the constraints meet at {np.degrees(angle):.3g}° in the "
-                        "metric",
+                        f"at {self._at(v, p)} the constraints meet at {np.degrees(angle):.3g}° "
+                        "in the metric",
                     )
         return None
 
@@ -160,10 +163,9 @@ class Reasons:
                     low, at_low = middle, at_middle
             factor = float(np.exp(_changes(at_low, at_high)[0]))
             if factor > JUMP:
-                x, y = (1 - low) * self._mesh.points[a] + low * self._mesh.points[b]
-                return Reason(
-                    Cause.JUMP, f"sizes jump by a factor of {factor:.3g} at ({x:.5g}, {y:.5g})"
-                )
+                ends = self._mesh.points[[a, b]]
+                place = place_text((1 - low) * ends[0] + low * ends[1], _extent(ends))
+                return Reason(Cause.JUMP, f"sizes jump by a factor of {factor:.3g} at {place}")
         return None
 
     def _unresolved(self, edges: list[tuple[int, int]]) -> Reason | None:
@@ -176,13 +178,17 @@ class Reasons:
             return None
         return Reason(Cause.UNRESOLVED, f"within an edge sizes change by {np.exp(most):.3g}")
 
-    def _at(self, v: int) -> str:
-        x, y = self._mesh.points[v]
-        return f"({x:.5g}, {y:.5g})"
+    def _at(self, v: int, other: int) -> str:
+        """The place of a vertex, told from another."""
+        return place_text(self._mesh.points[v], _extent(self._mesh.points[[v, other]]))
 
 
 MET = Reason(Cause.MET, "there is nothing to explain")
 UNKNOWN = Reason(Cause.UNKNOWN, "nothing in the domain or the metric stands against it")
+
+
+def _extent(points: Floats) -> float:
+    return float(np.ptp(points, axis=0).max())
 
 
 def _key(a: int, b: int) -> tuple[int, int]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from metrics.measure import edge_lengths, mesh_edges, metric_areas
 
 from .adapt import control_space_on
+from .outline import check_is_mesh
 from .reasons import MET, Reason, Reasons
 from .validate import InvalidMeshError
 from .value import FrozenMapping, Value
@@ -264,6 +265,7 @@ def _plain(value: Any) -> Any:
 
 
 def check_measurable(mesh: Mesh) -> None:
+    check_is_mesh(mesh)
     t, n = mesh.triangles, len(mesh.points)
     if len(t) == 0:
         raise InvalidMeshError("the mesh has no triangles: there is nothing to measure")

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
 from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from .place_text import place_text
 from .reasons import Cause, Reason
 from .rich_text import html, plain
 
@@ -135,12 +137,13 @@ def _worst(report: Report) -> Table:
     table.add_row("length", "worst edges", "")
     for edge in report.worst_edges[:SHOWN]:
         between = f"{edge.vertices[0]}–{edge.vertices[1]}"
-        table.add_row(f"{edge.length:.4g}", between, f"{_at(edge.start)} to {_at(edge.end)}")
+        table.add_row(f"{edge.length:.4g}", between, _ends(edge.start, edge.end))
         _add_reason(table, edge.reason)
     table.add_row("quality", "worst triangles", "")
     for triangle in report.worst_triangles[:SHOWN]:
-        x, y = (sum(c) / 3 for c in zip(*triangle.corners, strict=True))
-        table.add_row(f"{triangle.quality:.4g}", str(triangle.triangle), f"around {_at((x, y))}")
+        corners = np.array(triangle.corners)
+        around = place_text(corners.mean(axis=0), float(np.ptp(corners, axis=0).max()))
+        table.add_row(f"{triangle.quality:.4g}", str(triangle.triangle), f"around {around}")
         _add_reason(table, triangle.reason)
     return table
 
@@ -150,8 +153,9 @@ def _add_reason(table: Table, reason: Reason) -> None:
         table.add_row("", "", str(reason))
 
 
-def _at(point: Point) -> str:
-    return f"({point[0]:.5g}, {point[1]:.5g})"
+def _ends(start: Point, end: Point) -> str:
+    apart = float(np.ptp([start, end], axis=0).max())
+    return f"{place_text(start, apart)} to {place_text(end, apart)}"
 
 
 def _count(number: float) -> str:

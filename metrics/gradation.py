@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from numbers import Real
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -100,5 +102,5 @@ def check_growth(beta: float, law: str) -> None:
     """Refuse a bound on growth, or a law, that is none."""
     if law not in LAWS:
         raise MetricError(f"law must be one of {', '.join(map(repr, LAWS))}, not {law!r}")
-    if not 1 < beta < np.inf:
+    if not (isinstance(beta, Real) and 1 < beta < np.inf):
         raise MetricError(f"beta must be above 1, and finite, not {beta!r}; 1.5 is usual")

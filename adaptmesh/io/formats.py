@@ -148,6 +148,13 @@ def format_of(path: Path) -> Format:
     """The format that the extension of a path tells."""
     found = FORMATS.get(path.suffix.lower())
     if found is None:
+        from ..domain_io import OUTLINE_SUFFIXES  # which reads meshes, too
+
+        if path.suffix.lower() in OUTLINE_SUFFIXES:
+            raise FormatError(
+                f"{path}: {path.suffix!r} is the extension of an outline, which read_domain reads, "
+                f"not of a mesh; those are {', '.join(FORMATS)}"
+            )
         raise FormatError(
             f"{path}: the extension {path.suffix!r} is not known; known are {', '.join(FORMATS)}"
         )

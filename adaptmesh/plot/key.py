@@ -15,6 +15,14 @@ TEXT = 17  # pixels
 MOST_ENTRIES = 14  # of a legend
 
 
+def as_written(words: str) -> str:
+    """What VTK draws as these words: a pair of $ would set a formula, and | columns of a table.
+
+    There is no way to write | but at the beginning; the broken bar comes nearest.
+    """
+    return words.replace("$", r"\$").replace("|", "\N{BROKEN BAR}")
+
+
 class Pen:
     """Draws text and rectangles at pixels of the window, from its lower left corner."""
 
@@ -37,7 +45,7 @@ class Pen:
         from vtkmodules.vtkRenderingCore import vtkTextActor
 
         actor = vtkTextActor()
-        actor.SetInput(words)
+        actor.SetInput(as_written(words))
         style = actor.GetTextProperty()
         style.SetFontFamilyToArial()
         style.SetFontSize(max(round(size * self.frame.unit), 6))

@@ -121,7 +121,7 @@ def test_uniform_sizes_are_what_they_were():
     np.testing.assert_array_equal(one.points, other.points)
 
 
-@pytest.mark.parametrize("bad", [1.0, 0.5, -2.0, np.nan, np.inf])
+@pytest.mark.parametrize("bad", [1.0, 0.5, -2.0, np.nan, np.inf, "2"])
 def test_what_is_no_gradation(bad):
     domain = two_squares(SIMILARITIES[0])
     with pytest.raises(am.MetricError, match="finite factor above 1"):

@@ -7,13 +7,16 @@ import sys
 
 import numpy as np
 import pytest
+from reference.transforms import SIMILARITIES
 
 import metrics
 from adaptmesh.domain import Domain
-from adaptmesh.errors import FormatError
+from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.mesh import Mesh
 from adaptmesh.plot import colours, ellipses, plot
 from adaptmesh.plot.frame import Frame, bounds_of
+from adaptmesh.plot.key import as_written
+from adaptmesh.plot.numbers import _apart, numbers_of
 
 SMALL = (420, 300)
 
@@ -292,6 +295,51 @@ def test_domain_with_numbers(draw):
     for wrong in ({"metric": 0.1}, {"ellipses": True}, {"show": "quality"}, {"show": [1.0]}):
         with pytest.raises(ValueError, match="a domain is drawn without"):
             plot(domain, **wrong)
+
+
+def test_words_are_drawn_as_written():
+    """VTK takes pairs of $ for formulas and | for columns, and would leave them out."""
+    from vtkmodules.vtkRenderingCore import vtkTextRenderer
+
+    renderer = vtkTextRenderer.GetInstance()
+    for words in ("rock|sand", "$x$ and $y$", "5 $", "a^2_b", "|a", "a\\|b|$c$"):
+        assert renderer.DetectBackend(as_written(words)) != vtkTextRenderer.MathText
+    assert as_written("rock sand, 5 %") == "rock sand, 5 %"
+
+
+@pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
+def test_numbers_of_points_stand_clear_of_their_lines(transform):
+    star = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)]
+    domain = Domain(transform(star), [(0, 1), (1, 2), (2, 3), (3, 0), (4, 2)])
+    points = [number for number in numbers_of(domain) if not number.is_side]
+    assert [number.words for number in points] == ["0", "1", "2", "3", "4"]
+    for number in points:
+        for a, b in domain.segments:
+            v = int(number.words)
+            if v in (a, b):
+                along = domain.points[a + b - v] - domain.points[v]
+                cosine = along @ number.aside / np.hypot(*along)
+                assert cosine < np.cos(np.radians(100))
+
+
+def test_numbers_do_not_overlap():
+    rng = np.random.default_rng(5)
+    low = rng.uniform(0, 300, (2000, 2))
+    boxes = np.concatenate([low, low + rng.uniform(5, 40, low.shape)], axis=1)
+    chosen = _apart(boxes, np.arange(len(boxes)))
+
+    def overlap(a, b):
+        return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+
+    for i in range(len(boxes)):
+        others = [j for j in chosen if j < i and overlap(boxes[i], boxes[j])]
+        assert (i in chosen) == (not others)
+
+
+def test_what_is_no_mesh_is_refused():
+    for wrong in ([1], None, "a.vtu"):
+        with pytest.raises(DomainError, match="a Mesh is wanted"):
+            plot(wrong)
 
 
 def test_path_refused(tmp_path):

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
+from reference.transforms import SIMILARITIES
 from scipy.spatial import Delaunay
 
 import metrics
+from adaptmesh.domain import Domain
+from adaptmesh.generate import generate
 from adaptmesh.mesh import Mesh
 from adaptmesh.report import LENGTH_BINS, Histogram, measure
 from adaptmesh.report_text import percent
@@ -170,3 +174,20 @@ def test_all_unit_is_said_only_if_all_are():
     assert percent(1e-6) == "0.0001 %"
     assert percent(0.0) == "0.00 %"
     assert "100.00 %" in str(measure(equilateral(1.0), 1.0))
+
+
+@pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
+def test_places_in_a_report_tell_the_ends_of_edges_apart(transform):
+    """Also in UTM, where five digits are hundreds of metres."""
+    corners = transform([(0, 0), (1, 0), (1, 0.01), (0.4, 0.02), (0, 1)])
+    unit = float(np.hypot(*(corners[1] - corners[0])))
+    mesh = generate(Domain.polygon(corners), 0.1 * unit)
+    report = measure(mesh, 0.1 * unit)
+    lines = str(report).splitlines()
+    for edge in report.worst_edges[:3]:
+        name = f"{edge.vertices[0]}–{edge.vertices[1]} "
+        (line,) = [line for line in lines if name in line]
+        ends = np.array(re.findall(r"\(([^,]+), ([^)]+)\)", line), float)
+        length = np.hypot(*np.subtract(edge.start, edge.end))
+        assert np.abs(ends - [edge.start, edge.end]).max() < 2e-3 * length
+    assert any("short constraint" in line for line in lines)
