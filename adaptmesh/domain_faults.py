@@ -31,8 +31,8 @@ def fault_text(domain: Domain, kind: str, i: int, j: int, x: float, y: float) ->
         + (f" past point {i} {place}, where a boundary ends" if i >= 0 else "")
         + "; close it, or check `holes`; adaptmesh.repair closes gaps below its tolerance",
         "open_hole": f"{line} is in a hole, where nothing is meshed, near point "
-        f"{i} {place}: on both sides of it is a hole or the outside; remove it there, check "
-        f"`holes`, {OR_REPAIR}",
+        f"{i} {place}: on both sides of it is a hole or the outside; say holes=[] if there are "
+        f"no holes, or give a point in each; or remove it there, {OR_REPAIR}",
         "uncertain_hole": f"whether what {line} ends at, at point {i} {place}, is "
         "a hole is uncertain: say holes=[] if it is not, holes='nesting' if it is, or give a point "
         "in each hole",

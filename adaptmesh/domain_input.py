@@ -22,7 +22,11 @@ Label = str | int
 Value = TypeVar("Value")
 ByLabel = Mapping[str, Value] | Mapping[int, Value] | Mapping[Label, Value]
 
+Holes = ArrayLike | str | None
+"""Points in the holes, "nesting", or None if they are to be found; see `Domain`."""
+
 LARGEST = 1e75  # coordinate: its fourth power is still a double
+SMALLEST = 1e-140  # coordinate but 0: products of two, and their rounding, are still exact
 FLAT = 1e-9
 """Heights that differ by at most this share of the extent are rounding: the points are plane."""
 OR_REPAIR = "or let adaptmesh.repair do it"
@@ -58,6 +62,14 @@ class Inside:
         return cls(nesting, holes is None, places, *checked_regions(regions, given))
 
 
+def refuse_holes(holes: Holes, given: str) -> None:
+    """Raise a `DomainError` if holes are given for a file that says itself what they are."""
+    if holes is not None:
+        raise DomainError(
+            f"holes={holes!r}: the file has {given}, which say what is inside; leave holes out"
+        )
+
+
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
     array.flags.writeable = False
     return array
@@ -79,6 +91,12 @@ def checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
         raise DomainError(f"{what}s must be an (n, 2) array, not one of shape {out.shape}")
     if len(out) < least:
         raise DomainError(f"{len(out)} {what}s: at least {least} are needed")
+    _check_range(out, what)
+    return read_only(out)
+
+
+def _check_range(out: Floats, what: str) -> None:
+    """Refuse coordinates of which no exact signs and no areas can be computed."""
     bad = np.flatnonzero(~np.isfinite(out).all(axis=1))
     if len(bad):
         x, y = out[bad[0]]
@@ -90,7 +108,13 @@ def checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
             f"{what} {bad[0]} is ({x:g}, {y:g}): areas and squares of coordinates beyond "
             f"{LARGEST:g} overflow; choose another unit of length"
         )
-    return read_only(out)
+    bad = np.flatnonzero(((np.abs(out) < SMALLEST) & (out != 0)).any(axis=1))
+    if len(bad):
+        x, y = out[bad[0]]
+        raise DomainError(
+            f"{what} {bad[0]} is ({x:g}, {y:g}): products of coordinates nearer to 0 than "
+            f"{SMALLEST:g} underflow; write 0 for what is rounding, or choose another unit"
+        )
 
 
 def _without_heights(points: Floats, what: str) -> Floats:

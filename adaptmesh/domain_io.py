@@ -10,6 +10,7 @@ from pathlib import Path
 from .bamg import read_bamg_geometry
 from .coverage import domain_of_shapes
 from .domain import Domain
+from .domain_input import Holes, refuse_holes
 from .drawings import Drawing, read_dxf, read_svg
 from .errors import DomainError, FormatError, FormatWarning
 from .geo import read_geo
@@ -21,7 +22,7 @@ from .shp import read_shapefile
 from .wkt import read_wkt
 
 
-def read_domain(path: str | os.PathLike[str]) -> Domain:
+def read_domain(path: str | os.PathLike[str], *, holes: Holes = None) -> Domain:
     """Read what to mesh from a file.
 
     ================== ==========================================================================
@@ -51,6 +52,9 @@ def read_domain(path: str | os.PathLike[str]) -> Domain:
     ----------
     path : str or path
         The file.
+    holes : sequence of (x, y), or "nesting", optional
+        As in `Domain`, for drawings of lines and .geo scripts without surfaces: ``[]`` if there are
+        no holes, whatever lies in what. Other files say themselves what is inside.
 
     Returns
     -------
@@ -68,8 +72,12 @@ def read_domain(path: str | os.PathLike[str]) -> Domain:
     --------
     repair : takes the path of a file that is not clean.
     """
-    raw = read_raw(path)
+    raw = read_raw(path, holes)
     with only_our_errors(path), located(path, DomainError):
+        if isinstance(raw, Drawing):
+            return raw.domain(holes)
+        if Path(path).suffix.lower() != ".geo":
+            refuse_holes(holes, "a mesh, polygons or points in holes")
         if isinstance(raw, Domain):
             return raw
         return (
@@ -92,9 +100,17 @@ def _without_empty(shapes: list[Shape], path: str | os.PathLike[str]) -> list[Sh
     return kept
 
 
-def read_raw(path: str | os.PathLike[str]) -> Domain | Outline | Drawing | list[Shape]:
-    """What is in a file that `read_domain` can read, before it is checked."""
+def read_raw(
+    path: str | os.PathLike[str], holes: Holes = None
+) -> Domain | Outline | Drawing | list[Shape]:
+    """What is in a file that `read_domain` can read, before it is checked.
+
+    A script becomes a domain at once, with these holes.
+    """
     path = Path(path)
+    if path.suffix.lower() == ".geo":
+        with only_our_errors(path), located(path, DomainError):
+            return read_geo(path, holes)
     reader = _READERS.get(path.suffix.lower(), _domain_of_mesh_file)
     with only_our_errors(path), located(path, DomainError):
         return reader(path)

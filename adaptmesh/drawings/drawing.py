@@ -15,6 +15,7 @@ from ..coincident import curves_once
 from ..curved import extent_of
 from ..curves import Curve, EllipticArc, Polyline
 from ..domain import Domain
+from ..domain_input import Holes, refuse_holes
 from ..errors import DomainError
 from ..faces import joined_lines, seeds_of
 from ..raw import Outline
@@ -53,15 +54,18 @@ class Drawing:
         """Ends that are nearer than this are one, in units of the coordinates."""
         return JOINED * extent_of(self.curves)
 
-    def domain(self) -> Domain:
-        """What the curves enclose: inside is what an odd number of boundaries encloses.
+    def domain(self, holes: Holes = None) -> Domain:
+        """What the curves enclose, but for the holes, see `Domain`.
 
         If there are filled areas only, these are what is meshed.
         """
         if self.fills and not self.curves:
+            refuse_holes(holes, "filled areas")
             return filled_domain(self.fills)
         self._check_not_empty()
-        return Domain.from_curves(self.curves, names=self.names, join_tolerance=self.join_tolerance)
+        return Domain.from_curves(
+            self.curves, names=self.names, holes=holes, join_tolerance=self.join_tolerance
+        )
 
     def outline(self) -> Outline:
         """The same of straight lines, as points and segments that nobody has checked."""
@@ -79,7 +83,7 @@ class Drawing:
             name: np.flatnonzero(np.isin(owner, curves)).tolist()
             for name, curves in self.names.items()
         }
-        return Outline(points[kept], segments, "nesting", names=names)
+        return Outline(points[kept], segments, names=names)
 
     def _check_not_empty(self) -> None:
         if not self.curves:

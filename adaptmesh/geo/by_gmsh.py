@@ -25,6 +25,7 @@ from ..coincident import curves_once
 from ..curved import extent_of
 from ..curves import Arc, BSpline, Curve, Line
 from ..domain import Domain
+from ..domain_input import Holes, refuse_holes
 from ..drawings.drawing import JOINED, affine_arc
 from ..errors import FormatError, FormatWarning
 from ..faces import joined_lines, seeds_of
@@ -49,7 +50,7 @@ def is_installed() -> bool:
     return importlib.util.find_spec("gmsh") is not None
 
 
-def read_by_gmsh(path: Path) -> Domain:
+def read_by_gmsh(path: Path, holes: Holes = None) -> Domain:
     """Read a domain from a script, as Gmsh understands it; a `FormatError` says what is wrong."""
     script = safe_script(path)
     said = _opened(path, script)
@@ -61,7 +62,7 @@ def read_by_gmsh(path: Path) -> Domain:
             FormatWarning,
             stacklevel=2,
         )
-    return _Model.of(path, said).domain()
+    return _Model.of(path, said).domain(holes)
 
 
 def _opened(path: Path, script: SafeScript) -> dict[str, Any]:
@@ -131,7 +132,7 @@ class _Model:
             )
         return model
 
-    def domain(self) -> Domain:
+    def domain(self, holes: Holes = None) -> Domain:
         if not self.curves:
             raise FormatError(f"{self.path}: it has no curves: there is nothing to mesh")
         inside = {t for s in self.surfaces.values() for t in s["curves_inside"]}
@@ -149,7 +150,10 @@ class _Model:
             for tag, s in self.surfaces.items()
         }
         groups = {name: members for dim, _, name, members in self.groups if dim == 2}
-        holes, regions = seeds_of(faces, groups) if faces else ("nesting", {})
+        regions: dict[str, Any] = {}
+        if faces:
+            refuse_holes(holes, "surfaces")
+            holes, regions = seeds_of(faces, groups)
         points = {t for s in self.surfaces.values() for t in s["points_inside"]}
         return Domain.from_curves(
             curves,

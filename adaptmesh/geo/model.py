@@ -3,8 +3,8 @@
 The curves are those of Gmsh: a Circle or Ellipse runs the shorter way around, a Spline is that of
 Catmull and Rom (each tangent parallel to the line between the two neighbours), a BSpline is
 uniform and cubic, clamped if it is open. Plane surfaces are what is meshed; what they leave out is
-outside, and without any everything that curves enclose by nesting. Physical curves give names,
-physical surfaces regions.
+outside, and without any it is all that curves enclose, but for holes, as in `Domain`. Physical
+curves give names, physical surfaces regions.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from ..curved import extent_of
 from ..curves import Arc, Bezier, BSpline, Curve, EllipticArc, Line
 from ..domain import Domain
+from ..domain_input import Holes, refuse_holes
 from ..drawings.drawing import JOINED
 from ..errors import DomainError, FormatError
 from ..faces import seeds_of
@@ -42,12 +43,14 @@ _HALF = 4e-15  # radians by which half a turn may be off by rounding
 _SAMPLES = np.linspace(0, 1, 33)  # on each curve, for polygons in which seeds are found
 
 
-def read_geo(path: str | os.PathLike[str]) -> Domain:
+def read_geo(path: str | os.PathLike[str], holes: Holes = None) -> Domain:
     """Read a domain from a Gmsh script.
 
     Parameters
     ----------
     path : str or path
+    holes : optional
+        As in `Domain`, for a script without surfaces.
 
     Returns
     -------
@@ -66,14 +69,14 @@ def read_geo(path: str | os.PathLike[str]) -> Domain:
     path = Path(path)
     text = read_text(path)
     try:
-        return _Model.of(script_of(text)).domain()
+        return _Model.of(script_of(text)).domain(holes)
     except NotReadError as error:
-        return _by_gmsh(path, error)
+        return _by_gmsh(path, error, holes)
     except FormatError as error:
         raise FormatError(f"{path}, {error}") from None
 
 
-def _by_gmsh(path: Path, error: FormatError) -> Domain:
+def _by_gmsh(path: Path, error: FormatError, holes: Holes) -> Domain:
     """The domain as Gmsh has it, if it is installed; else the error says that it would help."""
     if not by_gmsh.is_installed():
         raise FormatError(
@@ -81,7 +84,7 @@ def _by_gmsh(path: Path, error: FormatError) -> Domain:
             'pip install "adaptmesh-metric[gmsh]"'
         ) from None
     try:
-        return by_gmsh.read_by_gmsh(path)
+        return by_gmsh.read_by_gmsh(path, holes)
     except FormatError as of_gmsh:
         raise FormatError(f"{path}, {error}. By Gmsh: {of_gmsh}") from None
 
@@ -185,7 +188,7 @@ class _Model:
 
     # -- the domain
 
-    def domain(self) -> Domain:
+    def domain(self, holes: Holes = None) -> Domain:
         used = self._used()
         for k in self.inner_curves:
             if k not in self.curves:
@@ -199,7 +202,10 @@ class _Model:
             for name, numbers in self.curve_names.items()
         }
         faces = {number: self._face(number) for number in self.surfaces}
-        holes, regions = seeds_of(faces, self.surface_names) if faces else ("nesting", {})
+        regions: dict[str, Any] = {}
+        if faces:
+            refuse_holes(holes, "surfaces")
+            holes, regions = seeds_of(faces, self.surface_names)
         isolated = [self.points[k] for k in self.inner_points if k in self.points]
         return Domain.from_curves(
             curves,

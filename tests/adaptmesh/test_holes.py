@@ -191,3 +191,97 @@ def test_parts_of_polygons_that_overlap_or_are_nested_are_refused():
     in_hole = shapely.Polygon(OUTER, [INNER, [(1.4, 1.4), (1.6, 1.4), (1.5, 1.6)]])
     with pytest.raises(am.DomainError, match="hole 1 of polygon 0 lies in another hole"):
         am.Domain.polygon(in_hole)
+
+
+def lattice(n, transform):
+    """Points and segments of n x n cells."""
+    points = [(i, j) for i in range(n + 1) for j in range(n + 1)]
+    number = {p: k for k, p in enumerate(points)}
+    steps = [(p, (p[0] + dx, p[1] + dy)) for p in points for dx, dy in ((1, 0), (0, 1))]
+    segments = [(number[p], number[q]) for p, q in steps if q in number]
+    return transform(points), segments
+
+
+def write_svg(path, points, segments):
+    lines = [
+        f'<line x1="{points[a][0]!r}" y1="{points[a][1]!r}" x2="{points[b][0]!r}" '
+        f'y2="{points[b][1]!r}"/>'
+        for a, b in segments
+    ]
+    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg">{"".join(lines)}</svg>')
+
+
+def write_dxf(path, points, segments):
+    out = ["0", "SECTION", "2", "ENTITIES"]
+    for a, b in segments:
+        out += ["0", "LINE", "8", "0", "10", repr(points[a][0]), "20", repr(points[a][1])]
+        out += ["11", repr(points[b][0]), "21", repr(points[b][1])]
+    path.write_text("\n".join([*out, "0", "ENDSEC", "0", "EOF", ""]))
+
+
+def write_geo(path, points, segments):
+    out = [f"Point({i + 1}) = {{{x!r}, {y!r}, 0}};" for i, (x, y) in enumerate(points)]
+    out += [f"Line({i + 1}) = {{{a + 1}, {b + 1}}};" for i, (a, b) in enumerate(segments)]
+    path.write_text("\n".join(out))
+
+
+@pytest.mark.parametrize("transform", SIMILARITIES[:4] + TRANSFORMS[-2:], ids=str)
+@pytest.mark.parametrize("write", [write_svg, write_dxf, write_geo])
+def test_files_of_lines_say_what_domain_says_of_their_holes(write, transform, tmp_path):
+    """The middle cell of nine was a hole in scripts, and in what `repair` made of drawings."""
+    path = tmp_path / f"cells.{write.__name__[6:]}"
+    for n in (2, 3, 4):
+        points, segments = lattice(n, transform)
+        write(path, points.tolist(), segments)
+        if n == 2:
+            assert am.read_domain(path).area == pytest.approx(4 * abs(transform.determinant))
+            continue
+        for make in (am.read_domain, am.repair):
+            with pytest.raises(am.DomainError, match=r"uncertain: say holes=\[\]"):
+                make(path)
+        cells = am.read_domain(path, holes=[])
+        assert cells.area == pytest.approx(n * n * abs(transform.determinant), rel=1e-9)
+    points, segments = closed(OUTER, INNER)
+    write(path, transform(points).tolist(), segments)
+    place = transform((1.5, 1.5)) * (1, -1 if write is write_svg else 1)  # y is turned over
+    for holes, area in ((None, 8), ("nesting", 8), ([place], 8), ([], 9)):
+        found = am.read_domain(path, holes=holes).area
+        assert found == pytest.approx(area * abs(transform.determinant), rel=1e-9)
+
+
+def test_holes_of_files_that_say_what_is_inside(tmp_path):
+    am.write(tmp_path / "a.vtu", am.generate(am.Domain.rectangle(0, 0, 1, 1), 0.5))
+    (tmp_path / "a.wkt").write_text("POLYGON ((0 0, 1 0, 1 1, 0 0))")
+    (tmp_path / "a.geo").write_text(
+        "Point(1) = {0,0,0}; Point(2) = {1,0,0}; Point(3) = {0,1,0}; Line(1) = {1,2};"
+        "Line(2) = {2,3}; Line(3) = {3,1}; Line Loop(1) = {1,2,3}; Plane Surface(1) = {1};"
+    )
+    for name in ("a.vtu", "a.wkt", "a.geo"):
+        assert am.read_domain(tmp_path / name).area > 0
+        with pytest.raises(am.DomainError, match=r"holes=\[\]: the file has .* leave holes out"):
+            am.read_domain(tmp_path / name, holes=[])
+
+
+def test_two_parts_between_holes_get_the_remedy():
+    """Two wires between electrodes: what they enclose may be a hole or not, points say it."""
+    points, segments = closed(OUTER, [(0.5, 1), (1, 1), (1, 2), (0.5, 2)])
+    points = np.concatenate([points, [(2, 1), (2.5, 1), (2.5, 2), (2, 2)]])
+    segments += [(8, 9), (9, 10), (10, 11), (11, 8), (5, 8), (6, 11)]
+    with pytest.raises(am.DomainError, match=r"holes=\[\] if there are no holes, or give a point"):
+        am.Domain(points, segments)
+    assert am.Domain(points, segments, holes=[]).area == 9
+    assert am.Domain(points, segments, holes=[(0.7, 1.5), (2.2, 1.5)]).area == 8
+
+
+@pytest.mark.parametrize("holes", [5, "nesting", "none"])
+def test_holes_of_a_polygon_are_rings(holes):
+    with pytest.raises(am.DomainError, match="expected a sequence of rings"):
+        am.Domain.polygon(OUTER, holes=holes)
+
+
+@pytest.mark.parametrize("tiny", [5e-324, -1e-310, 1e-141])
+def test_coordinates_whose_products_underflow_are_refused(tiny):
+    """Exact signs were wrong, so that `validate` saw edges cross in right meshes."""
+    for make in (am.Domain.polygon, am.repair):
+        with pytest.raises(am.DomainError, match="nearer to 0 than 1e-140 underflow; write 0"):
+            make([(0, tiny), (1, 0), (0, 1)])
