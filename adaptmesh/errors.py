@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from metrics.errors import AdaptmeshError, MetricError
 
@@ -45,7 +45,22 @@ class TransferError(AdaptmeshError, ValueError):
     """A field that cannot be carried to another mesh: wrong length, not finite, or too far away."""
 
 
-class LoopError(AdaptmeshError):
+class _Stopped(BaseException):
+    """Base of errors that hold more than their message: all of it is kept when they are pickled.
+
+    Without, the error of a loop in another process could not come back from there.
+    """
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _unpickled, (type(self), self.args), vars(self)
+
+
+def _unpickled(kind: type[BaseException], args: tuple[Any, ...]) -> BaseException:
+    """An error of this kind, made without its constructor; its attributes are set afterwards."""
+    return kind.__new__(kind, *args)
+
+
+class LoopError(_Stopped, AdaptmeshError):
     """A loop that was stopped by an exception, which is its ``__cause__``.
 
     Attributes
@@ -64,7 +79,7 @@ class LoopError(AdaptmeshError):
         super().__init__(f"iteration {iteration}, {stage}: {type(error).__name__}: {error}")
 
 
-class LoopInterrupted(KeyboardInterrupt):
+class LoopInterrupted(_Stopped, KeyboardInterrupt):
     """Ctrl-C in a loop; `history`, `iteration` and `stage` are as those of `LoopError`."""
 
     def __init__(self, history: History, iteration: int, stage: str) -> None:
@@ -72,7 +87,7 @@ class LoopInterrupted(KeyboardInterrupt):
         super().__init__(f"iteration {iteration}, {stage}: interrupted")
 
 
-class TransientError(AdaptmeshError):
+class TransientError(_Stopped, AdaptmeshError):
     """A loop in time that was stopped by an exception, which is its ``__cause__``.
 
     Attributes
@@ -95,7 +110,7 @@ class TransientError(AdaptmeshError):
         )
 
 
-class TransientInterrupted(KeyboardInterrupt):
+class TransientInterrupted(_Stopped, KeyboardInterrupt):
     """Ctrl-C in a loop in time; its attributes are those of `TransientError`."""
 
     def __init__(self, history: TransientHistory, sweep: int, interval: int, stage: str) -> None:

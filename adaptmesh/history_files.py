@@ -25,7 +25,7 @@ from .io.files import read_bytes, replace_files
 from .mesh import Mesh
 from .notes import Notes
 from .solved import UNNAMED, Solved
-from .stored import check_fields, damage_named, decoded, encoded, take
+from .stored import check_fields, damage_named, decoded, encoded, refuse_left_over, take
 from .value import FrozenMapping
 
 if TYPE_CHECKING:
@@ -130,14 +130,16 @@ def read_snapshot(path: Path, domain: Domain | None) -> Snapshot:
     """The arrays of one iteration."""
     mesh, arrays, notes = decoded(path, domain)
     with damage_named(path):
-        fields = {str(n): take(arrays, f"field_{k}") for k, n in enumerate(notes.items("fields"))}
+        fields = {n: take(arrays, f"field_{k}") for k, n in enumerate(notes.names("fields"))}
         check_fields(fields, mesh)
         is_bare = notes.flag("is_bare")
         if is_bare and list(fields) != [UNNAMED]:
             raise FormatError(f"the fields {list(fields)} are not one without a name")
         given = _metric(arrays, "given", mesh) if notes.flag("metric_was_given") else None
         solved = Solved(FrozenMapping(fields), is_bare, given, notes.reals("errors"))
-        return Snapshot(mesh, solved, _metric(arrays, "metric", mesh))
+        metric = _metric(arrays, "metric", mesh)
+        refuse_left_over(arrays)
+        return Snapshot(mesh, solved, metric)
 
 
 def _metric(arrays: dict[str, NDArray[Any]], name: str, mesh: Mesh) -> NDArray[np.float64]:

@@ -22,6 +22,7 @@ from .errors import BudgetError, LoopError, LoopInterrupted
 from .expected import expect_function
 from .history import History, Iteration, PathLike, Seconds, Snapshot
 from .mesh import Mesh
+from .option_text import option_as_text
 from .solved import Solved, as_solved, space_of
 from .steering import Steering, check_reachable
 from .stopping import Budget, StoppingRule
@@ -350,7 +351,7 @@ def _resumed(
 ) -> History:
     """The history to go on with: empty, or an earlier one that began with this mesh."""
     options = {
-        name: str(value)
+        name: option_as_text(value)
         for options in (steering, rule)
         for name, value in vars(options).items()
         if value is not None

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .domain_input import ByLabel, Label, check_is_mapping, checked_points
 from .errors import DomainError
+from .value import Value
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -80,7 +81,7 @@ def straight_sides(ends: Floats, outward: Floats, describe: Callable[[int], str]
     return Sides(ends, places, np.repeat(outward[:, None], len(LOOKS), axis=1), describe)
 
 
-class Selector(ABC):
+class Selector(Value, ABC):
     """A way to choose sides."""
 
     @abstractmethod
@@ -88,7 +89,7 @@ class Selector(ABC):
         """Which sides get the name, (k,)."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Where(Selector):
     """Sides on which a condition holds, a function of places (n, 2) that returns bool (n,)."""
 
@@ -107,7 +108,7 @@ class Where(Selector):
         return sides.whole(holds.reshape(len(sides), -1), name)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Nearest(Selector):
     """The side that is nearest to each of some points; see `nearest`."""
 
@@ -133,7 +134,7 @@ class Nearest(Selector):
         return out
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Facing(Selector):
     """Sides whose outward normal has about a direction; see `facing`."""
 

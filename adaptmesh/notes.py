@@ -46,6 +46,14 @@ class Notes:
     def items(self, key: str) -> list[Any]:
         return list(self._value(key, (list,), "a list"))
 
+    def names(self, key: str) -> list[str]:
+        """A list of texts, none of them twice."""
+        names = self.items(key)
+        for k, name in enumerate(names):
+            if type(name) is not str or name in names[:k]:
+                raise FormatError(f"{key!r} has {name!r:.60}, not a text or there before")
+        return names
+
     def within(self, key: str) -> Notes:
         return Notes(self._value(key, (dict,), "an object"))
 

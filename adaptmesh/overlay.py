@@ -27,12 +27,13 @@ from .location import (
 from .mesh import Mesh
 from .projection import mass_matrix, solve_mass
 from .spaces import Field, Floats, Ints, Space, as_field, as_fields
+from .value import Value
 
 COVERED_TWICE = 1e-6
 """Parts of a triangle may exceed it by this share, far more than by rounding."""
 
 
-class Overlay:
+class Overlay(Value):
     """Which triangles of two meshes overlap, and by how much; carries fields conservatively.
 
     Parameters
@@ -65,18 +66,27 @@ class Overlay:
     def __init__(self, old_mesh: Mesh, new_mesh: Mesh, *, outside: float = OUTSIDE) -> None:
         check_outside(outside)
         self.old_mesh, self.new_mesh = old_mesh, new_mesh
-        old, new = located(old_mesh, "old"), located(new_mesh, "new")
+        old, new = self._located
         check_no_loose_points(new_mesh, "new")
-        self._core = _core.Overlay(old.locator, old_mesh.areas, new.locator, new_mesh.areas)
-        first, olds, self.areas = self._core.pairs()
+        first, olds, self.areas = self._supermesh.pairs()
         news = np.repeat(np.arange(len(new_mesh.triangles), dtype=np.int32), np.diff(first))
         self.pairs: Ints = np.stack([olds, news], axis=1)
         if not len(olds):
             raise TransferError(f"the meshes do not overlap: {old_mesh!r} and {new_mesh!r}")
+        self.areas.flags.writeable = self.pairs.flags.writeable = False
         check_triangles(_missing(news, len(new_mesh.triangles)), new, old, outside)
         check_triangles(_missing(olds, len(old_mesh.triangles)), old, new, outside)
         _check_covered_once(self.uncovered, new, old)
         _check_covered_once(self.lost, old, new)
+
+    @cached_property
+    def _located(self) -> tuple[Located, Located]:
+        return located(self.old_mesh, "old"), located(self.new_mesh, "new")
+
+    @cached_property
+    def _supermesh(self) -> _core.Overlay:
+        old, new = self._located
+        return _core.Overlay(old.locator, old.mesh.areas, new.locator, new.mesh.areas)
 
     @property
     def area(self) -> float:
@@ -96,6 +106,9 @@ class Overlay:
         covered = np.bincount(self.pairs[:, 0], self.areas, len(self.old_mesh.triangles))
         out: Floats = self.old_mesh.areas - covered
         return out
+
+    def __repr__(self) -> str:
+        return f"<Overlay: {len(self.pairs)} pairs of triangles, area {self.area:.6g}>"
 
     def project(self, values: Any, *, space: Any = None, keep_bounds: bool = False) -> Any:
         """The L² projection of fields onto the same spaces on the new mesh.
@@ -124,7 +137,7 @@ class Overlay:
         old, new = fields[0].space, Space(self.new_mesh, fields[0].space.name)
         columns = np.concatenate([field.columns for field in fields], axis=1)
         bounds = bounds_on_triangles(old, columns) if keep_bounds else None
-        moments = self._core.moments(
+        moments = self._supermesh.moments(
             columns,
             old.nodes_of_triangles,
             new.nodes_of_triangles,
@@ -135,7 +148,7 @@ class Overlay:
         matrix = mass_matrix(new)
         projected = solve_mass(matrix, moments, new.degree)
         if bounds is not None:
-            low, high = self._core.ranges(*bounds, new.nodes_of_triangles, new.size)
+            low, high = self._supermesh.ranges(*bounds, new.nodes_of_triangles, new.size)
             projected = limited(new, matrix, moments, projected, low, high)
         ends = np.cumsum([field.columns.shape[1] for field in fields])[:-1]
         parts = np.split(projected, ends, axis=1)

@@ -65,6 +65,12 @@ def take(arrays: dict[str, NDArray[Any]], name: str) -> NDArray[Any]:
     return arrays.pop(name)
 
 
+def refuse_left_over(arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Raise for arrays that nothing in the file has asked for: what did is lost."""
+    if arrays:
+        raise FormatError(f"nothing in the notes says what the array {next(iter(arrays))!r} is")
+
+
 def _mesh(arrays: dict[str, NDArray[Any]], notes: Notes) -> Mesh:
     points, triangles, regions, edges, tags = (
         _of_mesh(name, take(arrays, name)) for name in MESH_ARRAYS
@@ -89,6 +95,8 @@ def check_fields(values: Mapping[str, NDArray[Any]], mesh: Mesh) -> None:
     for name, array in values.items():
         if array.dtype.kind not in "iufc" or not array.ndim or len(array) not in lengths:
             raise FormatError(f"field {name!r} is {array.dtype} of shape {array.shape}")
+        if not np.isfinite(array).all():
+            raise FormatError(f"field {name!r} has values that are not finite")
 
 
 @contextmanager

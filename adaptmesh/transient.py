@@ -36,6 +36,7 @@ from .history import PathLike
 from .history_files import refuse_history
 from .loop import Clock, largest_size, refuse_other_mesh, with_domain
 from .mesh import Mesh
+from .option_text import option_as_text
 from .solved import Solved, as_solved, space_of
 from .steering import check_reachable
 from .steering_in_time import SteeringInTime
@@ -313,7 +314,9 @@ def _resumed(
     steering: SteeringInTime,
 ) -> TransientHistory:
     """The history to go on with: empty, or an earlier one of this mesh, times and options."""
-    options = {name: str(value) for name, value in vars(steering).items() if value is not None}
+    options = {
+        name: option_as_text(value) for name, value in vars(steering).items() if value is not None
+    }
     if resume is None:
         return TransientHistory(options=options)
     if isinstance(resume, TransientHistory):

@@ -19,7 +19,7 @@ from .errors import FormatError
 from .history import Seconds
 from .history_files import make, read_list
 from .io.files import replace_files
-from .stored import check_fields, damage_named, decoded, encoded, take
+from .stored import check_fields, damage_named, decoded, encoded, refuse_left_over, take
 from .transient_history import Fields, Interval, TransientHistory
 from .value import FrozenMapping
 
@@ -111,7 +111,7 @@ def _interval(path: Path, domain: Domain | None) -> Interval:
     with damage_named(path):
         mappings = {
             name: FrozenMapping(
-                {str(n): take(arrays, f"{name}_{k}") for k, n in enumerate(notes.items(name))}
+                {n: take(arrays, f"{name}_{k}") for k, n in enumerate(notes.names(name))}
             )
             for name in MAPPINGS
         }
@@ -120,6 +120,7 @@ def _interval(path: Path, domain: Domain | None) -> Interval:
         times = take(arrays, "times")
         if times.ndim != 1 or times.dtype != np.float64:
             raise FormatError(f"the times are {times.dtype} of shape {times.shape}")
+        refuse_left_over(arrays)
         start, end = notes.real("start"), notes.real("end")
         if not -np.inf < start < end < np.inf:
             raise FormatError(f"an interval from {start:g} to {end:g}")

@@ -8,6 +8,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import overload
 
+from ..value import Value
+
 SHOWN = 5
 """So many repairs of a kind are printed; `Repairs` holds all of them."""
 
@@ -16,8 +18,8 @@ NOWHERE = (math.nan, math.nan)
 """The place of a repair of what has no points."""
 
 
-@dataclass(frozen=True)
-class Repair:
+@dataclass(frozen=True, eq=False)
+class Repair(Value):
     """One thing done to an outline.
 
     Attributes
@@ -47,8 +49,8 @@ class Repair:
         return "" if math.isnan(self.place[0]) else f"at {at(*self.place)}"
 
 
-@dataclass(frozen=True)
-class Repairs(Sequence[Repair]):
+@dataclass(frozen=True, eq=False)
+class Repairs(Value, Sequence[Repair]):
     """All that was done to an outline; printed as a report, and false if nothing was done.
 
     Attributes

@@ -174,6 +174,19 @@ def test_the_same_target_is_converged_at_once(start, done):
     assert same.converged and len(same) == len(done) and same.options_since == 0
 
 
+def test_the_same_options_in_other_words_are_the_same(start):
+    def solve(mesh):
+        return {"u": wavy(mesh), "v": mesh.points[:, 1] ** 2}
+
+    one = {"error": {"u": 0.02, "v": 1}, "fields": ["u", "v"], "h_min": 0, "max_iterations": 2}
+    two = {"error": {"v": 1.0, "u": np.float64(0.02)}, "fields": ("u", "v"), "h_min": 0.0}
+    done = am.adapt_loop(solve, start, **one)
+    same = am.adapt_loop(solve, start, resume=done, max_iterations=2, **two)
+    assert same.options_since == 0 and same.options == done.options
+    other = am.adapt_loop(solve, start, resume=done, **{**one, "error": {"u": 0.02, "v": 2}})
+    assert other.options_since == len(done) - 1
+
+
 def test_iterations_for_other_options_do_not_count(start, done):
     options = {"target_vertices": 900, "tolerance": 0, "max_iterations": 2}
     more = am.adapt_loop(wavy, start, resume=done, **options)

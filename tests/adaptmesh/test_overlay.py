@@ -409,7 +409,7 @@ def test_extensions_keep_bounds_and_are_not_cut_off(kind, space, transform):
     values = rng.random((before.size, 1)) ** 6
     low, high = bounds_on_triangles(before, values)
     nodes = before.nodes_of_triangles, after.nodes_of_triangles
-    moments = overlay._core.moments(values, *nodes, after.size, 0.25, low, high)
+    moments = overlay._supermesh.moments(values, *nodes, after.size, 0.25, low, high)
     kept = overlay.project(values, space=space, keep_bounds=True)
     np.testing.assert_allclose(integral(new, kept, space), moments.sum(), rtol=1e-14)
     new_low, new_high = bounds_on_triangles(after, kept)

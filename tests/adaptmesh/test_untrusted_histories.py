@@ -172,6 +172,33 @@ def test_archives(edit, folder):
     refused(read_history, folder, r"iteration_0000\.npz")
 
 
+def noted(name, to):
+    """Put another value into the notes of the archive."""
+
+    def edit(folder):
+        with np.load(archive(folder)) as arrays:
+            notes = json.loads(str(arrays["notes"]))
+        entry("notes", array(json.dumps(notes | {name: to})))(folder)
+
+    return edit
+
+
+@pytest.mark.parametrize("names", [[], [None], [1], [[]], ["solution", "solution"], "solution"])
+def test_names_of_fields_are_texts_and_leave_none_out(names, folder):
+    for is_bare in (True, False):
+        noted("fields", names)(folder)
+        noted("is_bare", is_bare)(folder)
+        refused(read_history, folder, r"iteration_0000\.npz")
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_field_with_a_value_that_no_loop_takes_is_refused(value, folder, whole):
+    values = np.array(whole[0].fields["solution"])
+    values[3] = value
+    entry("field_0", array(values))(folder)
+    refused(read_history, folder, "not finite")
+
+
 @pytest.mark.parametrize("dtype", ["<f8", ">f8", "<f4", "<c16", "<i4", "|b1", "|u1"])
 @pytest.mark.parametrize("shape", [(0,), (7,), (3, 4), (2, 3, 4)])
 @pytest.mark.parametrize("order", ["C", "F"])

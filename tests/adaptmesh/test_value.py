@@ -7,6 +7,7 @@ from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 import pytest
+import shapely
 from reference.transforms import SIMILARITIES
 
 import adaptmesh as am
@@ -27,6 +28,10 @@ def curved_domain(transform=SIMILARITIES[0]):
 def periodic_domain():
     domain = am.Domain.rectangle(0, 0, 2, 1).with_periodic("left", "right")
     return domain.with_frozen("bottom")
+
+
+def with_an_empty_part():
+    return shapely.from_wkt("MULTIPOLYGON (((0 0, 1 0, 1 1, 0 0)), EMPTY)")
 
 
 def things():
@@ -51,6 +56,11 @@ def things():
         "validity": am.validate(mesh),
         "repairs": dirty[1],
         "history": am.adapt_loop(solve, start, target_vertices=60, max_iterations=2),
+        "overlay": am.Overlay(mesh, am.generate(mesh.domain, 0.25)),
+        "repairs without a place": am.repair(with_an_empty_part())[1],
+        "nearest": am.nearest((0, 0), (1, 1)),
+        "facing": am.facing((0, 1)),
+        "solution": am.Solution({"u": np.array([1.0, np.nan])}, errors={"u": np.nan}),
         "circle": am.curves.Circle((0, 0), 1),
         "part": am.curves.Circle((0, 0), 1).part(0.2, 0.4),
         "uniform": metrics.Uniform(0.1),
@@ -78,6 +88,11 @@ NAMES = [
     "validity",
     "repairs",
     "history",
+    "overlay",
+    "repairs without a place",
+    "nearest",
+    "facing",
+    "solution",
     "circle",
     "part",
 ]
@@ -140,6 +155,45 @@ def test_a_process_gives_the_mesh_that_this_one_gives():
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(1, mp_context=context) as pool:
         assert pool.submit(am.generate, domain, 0.2).result() == am.generate(domain, 0.2)
+
+
+def stopped():
+    error = ValueError("no such thing")
+    return [
+        am.LoopError(am.History(), 3, "solve", error),
+        am.LoopInterrupted(am.History(), 3, "adapt"),
+        am.TransientError(am.TransientHistory(), 1, 2, "save", error),
+        am.TransientInterrupted(am.TransientHistory(), 1, 2, "advance"),
+    ]
+
+
+@pytest.mark.parametrize("how", CARRIED)
+@pytest.mark.parametrize("error", stopped(), ids=lambda error: type(error).__name__)
+def test_errors_of_loops_are_carried_whole(error, how):
+    back = CARRIED[how](error)
+    assert type(back) is type(error)
+    assert str(back) == str(error) and vars(back) == vars(error)
+
+
+def test_the_error_of_a_loop_comes_back_from_a_process():
+    context = multiprocessing.get_context("spawn")
+    mesh = am.generate(periodic_domain(), 0.4)
+    no_solver = metrics.Uniform(0.1)  # takes points, not a mesh
+    with (
+        ProcessPoolExecutor(1, mp_context=context) as pool,
+        pytest.raises(am.LoopError, match="iteration 0, solve") as caught,
+    ):
+        pool.submit(am.adapt_loop, no_solver, mesh).result()
+    assert len(caught.value.history) == 0 and caught.value.stage == "solve"
+
+
+def test_an_overlay_that_is_carried_projects_to_the_same_bits(made):
+    overlay = made["overlay"]
+    back = pickle.loads(pickle.dumps(overlay))
+    values = np.sin(overlay.old_mesh.points @ [3.0, 2.0])
+    np.testing.assert_array_equal(back.project(values), overlay.project(values))
+    with pytest.raises(ValueError, match="read-only"):
+        overlay.areas[0] = 0
 
 
 def test_every_field_counts():
