@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from metrics import ControlSpace
 
+from .budget import about
 from .chords import Chords
 from .domain import Domain
 from .edge_lengths import measure_edges, sampler_of
@@ -181,7 +182,7 @@ def _ties(domain: Domain, kept: NDArray[np.bool_], points: Floats, pieces: Ints)
 def _check_budget(n: float, most_points: int) -> None:
     if n > most_points:
         raise BudgetError(
-            f"the boundary alone would have about {n:.3g} vertices, but max_vertices is "
+            f"the boundary alone would have about {about(n)} vertices, but max_vertices is "
             f"{most_points:,}: ask for larger sizes, or allow more"
         )
 

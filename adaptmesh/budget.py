@@ -13,6 +13,11 @@ Progress = Callable[[str, float], None]
 """Called with the stage at work and how much of all the work is done, from 0 to 1."""
 
 
+def about(n: float) -> str:
+    """A predicted number, in words for people: all digits of small ones, three of large ones."""
+    return f"{n:,.0f}" if n < 1e6 else f"{n:.3g}"
+
+
 @dataclass(frozen=True)
 class Budget:
     """How many vertices a mesh may have, and is expected to have."""
@@ -33,7 +38,7 @@ class Budget:
         """Refuse what is expected to be too large."""
         if self.expected > self.max_vertices:
             raise BudgetError(
-                f"the mesh would have about {self.expected:.3g} vertices, but max_vertices is "
+                f"the mesh would have about {about(self.expected)} vertices, but max_vertices is "
                 f"{self.max_vertices:,}: ask for larger sizes, or allow more"
             )
 

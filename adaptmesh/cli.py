@@ -55,7 +55,14 @@ from .cli_files import (
     outline_and_mesh,
 )
 from .cli_metric import Request, graded
-from .cli_output import EXIT_BAD, Speaker, neat_errors, show_warnings_neatly, write
+from .cli_output import (
+    EXIT_BAD,
+    Speaker,
+    neat_errors,
+    refused_as_usage,
+    show_warnings_neatly,
+    write,
+)
 
 if TYPE_CHECKING:
     from metrics import ControlSpace
@@ -283,8 +290,6 @@ def plot(
             raise typer.BadParameter("of which metric? Give --size or --metric")
         if field is not None and show is not Show.mesh:
             raise typer.BadParameter("give one of --show and --field")
-        if bounds is not None and not (bounds[0] < bounds[2] and bounds[1] < bounds[3]):
-            raise typer.BadParameter("--bounds X0 Y0 X1 Y1: expected X0 < X1 and Y0 < Y1")
         check_outputs(picture=output)
         look: Any = {"path": output, "bounds": bounds, "title": title}
         if is_outline(mesh):
@@ -293,12 +298,14 @@ def plot(
                     f"{mesh} is an outline, drawn with --show mesh or region, without a field or "
                     "metric: generate a mesh to see more"
                 )
-            am.plot(am.read_domain(mesh), show=show.value, **look)
+            with refused_as_usage():
+                am.plot(am.read_domain(mesh), show=show.value, **look)
         else:
             drawn = am.read(mesh)
             control = None if request.is_empty else request.control_space(drawn)
             colours = show.value if field is None else field_of(mesh, field)
-            am.plot(drawn, control, show=colours, ellipses=ellipses, **look)
+            with refused_as_usage():
+                am.plot(drawn, control, show=colours, ellipses=ellipses, **look)
         write(f"wrote {output}")
 
 

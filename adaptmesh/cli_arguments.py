@@ -32,6 +32,16 @@ def _checked_gradation(value: float | None) -> float | None:
     return value
 
 
+def _checked_bounds(
+    bounds: tuple[float, float, float, float] | None,
+) -> tuple[float, float, float, float] | None:
+    if bounds is not None:
+        x0, y0, x1, y1 = bounds
+        if not (x0 < x1 and y0 < y1 and all(map(math.isfinite, bounds))):
+            raise typer.BadParameter("expected X0 Y0 X1 Y1 with X0 < X1 and Y0 < Y1, all finite")
+    return bounds
+
+
 SIZE_HELP = (
     "Edge length asked for: a number, or an expression of x and y such as "
     "'0.01 + 0.1*hypot(x, y)'. It is parsed, never executed."
@@ -188,7 +198,7 @@ OffLines = Annotated[
 Title = Annotated[str | None, typer.Option(metavar="TEXT", help="Heading of the picture.")]
 Bounds = Annotated[
     tuple[float, float, float, float] | None,
-    typer.Option(metavar="X0 Y0 X1 Y1", help="Look at this part only."),
+    typer.Option(metavar="X0 Y0 X1 Y1", callback=_checked_bounds, help="Look at this part only."),
 ]
 Json = Annotated[
     bool, typer.Option("--json", help="Print one JSON object instead of text, when all is done.")

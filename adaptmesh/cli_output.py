@@ -75,6 +75,17 @@ def neat_errors() -> Iterator[None]:
         raise typer.Exit(EXIT_INTERRUPTED) from None
 
 
+@contextmanager
+def refused_as_usage() -> Iterator[None]:
+    """Take arguments that the library refuses, once it has seen the data, for wrong usage."""
+    try:
+        yield
+    except AdaptmeshError:
+        raise
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from None
+
+
 def _fail(message: str) -> NoReturn:
     typer.echo(typer.style("error: ", fg=typer.colors.RED, bold=True) + message, err=True)
     raise typer.Exit(EXIT_BAD) from None

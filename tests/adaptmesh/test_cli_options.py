@@ -240,6 +240,14 @@ def test_plot_of_a_field_with_bounds_and_title(run, monkeypatch):
     usage(run("plot", "carrier.vtu", *both, "-o", "out.png"), "--show and --field")
     wrong = ("--bounds", "1", "0", "0", "1")
     usage(run("plot", "carrier.vtu", *wrong, "-o", "out.png"), "X0 < X1")
+    endless = ("--bounds", "0", "0", "inf", "inf")
+    usage(run("plot", "carrier.vtu", *endless, "-o", "out.png"), "X0 < X1")
+
+
+@pytest.mark.parametrize("drawn", ["plain.vtu", "plate.geojson"])
+def test_plot_of_a_part_where_nothing_is(run, drawn):
+    away = ("--bounds", "50", "50", "60", "60")
+    usage(run("plot", drawn, *away, "-o", "out.png"), "no triangle is in sight")
 
 
 def test_plot_of_an_outline_numbers_its_points_and_sides(run, monkeypatch):
