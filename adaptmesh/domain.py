@@ -85,7 +85,9 @@ class Domain(Value):
         `with_names`. A segment bears at most one.
     tags, region_tags : mapping of str to int, optional
         Numbers of names, for files and solvers that know only numbers. Other names get the least
-        numbers from 1 on that are free.
+        numbers from 1 on that are free. Two names of one number are two names of the same sides or
+        regions, of all that have that number. 0 is the number of what has no name: no side and no
+        region can be given a name with that number.
 
     Raises
     ------

@@ -251,6 +251,11 @@ def numbered(
     for label in labels:
         if isinstance(label, str):
             names[label] = int(given[label]) if label in given else next(free)
+            if not names[label]:
+                raise DomainError(
+                    f"{what} 0 for {label!r}: 0 is the {what} of all that has no name, which would "
+                    "be named, too; give another number"
+                )
         numbers.append(names[label] if isinstance(label, str) else label)
     names.update({name: int(number) for name, number in given.items()})
     return FrozenMapping(names), numbers

@@ -217,7 +217,8 @@ def validate(mesh: Mesh, *, tolerance: float | None = None) -> Validity:
     - *border is constrained*: sides with a single triangle are constrained edges.
     - *tags*: no tag and no region is negative, unless the domain gives it that number. One without
       a name is allowed: files carry bare numbers.
-    - *names*: names are text, each for one number, and none for 0, which has no name.
+    - *names*: names are text, each for a number of its own, and none for 0, which has no name;
+      unless the domain has them so. Files keep such names, but what they mean is ambiguous.
 
     - *kept once*: `Mesh.kept` gives no vertex of the mesh before to two.
 

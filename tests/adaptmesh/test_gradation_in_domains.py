@@ -115,6 +115,28 @@ def test_every_control_space_and_every_kind_of_mesh():
         np.testing.assert_allclose(graded.tensors, right, rtol=1e-12, atol=1e-12)
 
 
+@pytest.mark.parametrize("keep", [False, True])
+@pytest.mark.parametrize("transform", TRANSFORMS[2::4], ids=str)
+def test_adapted_meshes_are_graded_too(transform, keep):
+    """A function, and values at vertices, that jump by 20; what was graded before is kept."""
+    domain = two_squares(transform)
+
+    def size(x):
+        return np.where(x[:, 0] > 1 - 1e-9, 0.03, 0.45)
+
+    field = metrics.as_control_space(isotropic(transform, size))
+    old = am.generate(domain, field)
+    mesh = am.adapt(old, field, keep=keep, gradation=1.5)
+    report = am.measure(mesh, field.graded(domain, 1.5))
+    assert report.unit_fraction > 0.97
+    assert report.quality_min > 0.4
+    assert am.measure(am.adapt(old, field, keep=keep), field).quality_min < 0.2
+    again = am.adapt(mesh, field(mesh.points), keep=keep, gradation=1.5)
+    assert again.validate().ok
+    assert len(again.triangles) == pytest.approx(len(mesh.triangles), rel=0.05)
+    assert not keep or (again.kept >= 0).mean() > 0.9
+
+
 def test_uniform_sizes_are_what_they_were():
     domain = two_squares(SIMILARITIES[0])
     one, other = am.generate(domain, 0.1), am.generate(domain, 0.1, gradation=1.5)
@@ -126,6 +148,8 @@ def test_what_is_no_gradation(bad):
     domain = two_squares(SIMILARITIES[0])
     with pytest.raises(am.MetricError, match="finite factor above 1"):
         am.generate(domain, 0.1, gradation=bad)
+    with pytest.raises(am.MetricError, match="beta must be above 1"):
+        am.adapt(am.generate(domain, 0.5), 0.1, gradation=bad)
     with pytest.raises(am.MetricError, match="beta must be above 1"):
         metrics.RegionSizes(domain, {"a": 0.4, "b": 0.02}, growth=bad)
     with pytest.raises(am.MetricError, match="expected a domain or a mesh"):

@@ -54,6 +54,20 @@ def test_two_names_of_one_tag():
     assert domain.segment_tags.tolist() == [5, 5, 0, 0, 0, 0, 0]
 
 
+def test_a_name_whose_number_is_0_would_name_all_that_has_none():
+    for options in (
+        {"names": {"a": [0]}, "tags": {"a": 0}},
+        {"names": {"a": [0], "b": lambda x: x[:, 0] < 1e-9}, "tags": {"b": 0}},
+    ):
+        with pytest.raises(DomainError, match=r"tag 0 for '[ab]': 0 is the tag of all"):
+            a_domain(**options)
+        with pytest.raises(DomainError, match=r"tag 0 for '[ab]'"):
+            circle = Circle((0, 0), 1)
+            am.Domain.from_curves([circle], names={"a": [0], "b": []}, tags=options["tags"])
+    with pytest.raises(DomainError, match="region 0 for 'A': 0 is the region of all"):
+        a_domain(regions={"A": (0.5, 0.5)}, region_tags={"A": 0})
+
+
 def test_tags_of_curves():
     curves = [Circle((0, 0), 2), Circle((0, 0), 1), Line((-0.5, 0), (0.5, 0))]
     domain = am.Domain.from_curves(
