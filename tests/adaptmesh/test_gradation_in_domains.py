@@ -149,8 +149,6 @@ def test_what_is_no_gradation(bad):
     with pytest.raises(am.MetricError, match="finite factor above 1"):
         am.generate(domain, 0.1, gradation=bad)
     with pytest.raises(am.MetricError, match="beta must be above 1"):
-        am.adapt(am.generate(domain, 0.5), 0.1, gradation=bad)
-    with pytest.raises(am.MetricError, match="beta must be above 1"):
         metrics.RegionSizes(domain, {"a": 0.4, "b": 0.02}, growth=bad)
     with pytest.raises(am.MetricError, match="expected a domain or a mesh"):
         metrics.Uniform(1.0).graded(None)
