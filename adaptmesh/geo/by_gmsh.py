@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 import warnings
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -30,6 +30,7 @@ from ..drawings.drawing import JOINED, affine_arc
 from ..errors import FormatError, FormatWarning
 from ..faces import joined_lines, seeds_of
 from .gmsh_script import MENTIONED, SafeScript, safe_script
+from .groups import names_of_groups
 
 Floats = NDArray[np.float64]
 
@@ -38,6 +39,9 @@ SECONDS = 60
 
 MEMORY = 4 << 30
 """Bytes of address space that Gmsh may take."""
+
+SAME_RADIUS = 1e-6
+"""The ends of an arc are on its circle, to this share of its size, or a warning says so."""
 
 FLAT = 1e-9
 """Share of the extent by which heights of a plane domain may differ."""
@@ -122,6 +126,14 @@ class _Model:
             {int(tag): surface for tag, surface in said["surfaces"].items()},
             [(dim, tag, name or str(tag), entities) for dim, tag, name, entities in said["groups"]],
         )
+        off = [tag for tag, c in said["curves"].items() if c.get("off", 0) > SAME_RADIUS]
+        if off:
+            warnings.warn(
+                f"{path}: the ends of circles {', '.join(off)} are not equally far from their "
+                "centres: arcs through both ends are taken",
+                FormatWarning,
+                stacklevel=4,
+            )
         if said["periodic"]:
             listed = ", ".join(f"{a} and {b}" for a, b in said["periodic"])
             warnings.warn(
@@ -142,14 +154,15 @@ class _Model:
         kept, number = curves_once(found, JOINED * extent_of(found))
         number_of = dict(zip(used, number, strict=True))
         curves = [found[k] for k in kept]
-        names, tags = self._names(number_of)
+        names = self._names(number_of)
         samples = [c.point([0, 1] if c.is_straight else _SAMPLES) for c in curves]
         lines = joined_lines(samples, JOINED * extent_of(curves))
         faces = {
             tag: self._face(tag, [lines[k] for k in sorted({number_of[t] for t in s["curves"]})])
             for tag, s in self.surfaces.items()
         }
-        groups = {name: members for dim, _, name, members in self.groups if dim == 2}
+        of_surfaces = [(name, members) for dim, _, name, members in self.groups if dim == 2]
+        groups = names_of_groups(self.path, of_surfaces, "surfaces")
         regions: dict[str, Any] = {}
         if faces:
             refuse_holes(holes, "surfaces")
@@ -158,35 +171,26 @@ class _Model:
         return Domain.from_curves(
             curves,
             names=names,
-            tags=tags,
+            tags=self._tags(1, names),
             holes=holes,
             regions=regions,
-            region_tags={name: tag for dim, tag, name, _ in self.groups if dim == 2},
+            region_tags=self._tags(2, regions),
             points=[self.points[t] for t in sorted(points)],
             join_tolerance=JOINED * extent_of(curves),
         )
 
-    def _names(self, number_of: Mapping[int, int]) -> tuple[dict[str, list[int]], dict[str, int]]:
-        """Curves of each physical group; of one in several groups, a name for all of these."""
-        groups: dict[int, list[str]] = {}
-        tags = {}
-        for dim, tag, name, members in self.groups:
-            if dim == 1:
-                tags[name] = tag
-                for number in sorted({number_of[m] for m in members if m in number_of}):
-                    groups.setdefault(number, []).append(name)
-        names: dict[str, list[int]] = {}
-        for number, of in groups.items():
-            names.setdefault("|".join(of), []).append(number)
-        several = sorted(name for name in names if name not in tags)
-        if several:
-            warnings.warn(
-                f"{self.path}: curves that are in several physical groups bear the names of all: "
-                f"{', '.join(several)}",
-                FormatWarning,
-                stacklevel=4,
-            )
-        return names, {name: tag for name, tag in tags.items() if name in names}
+    def _names(self, number_of: Mapping[int, int]) -> dict[str, list[int]]:
+        groups = [
+            (name, [number_of[m] for m in members if m in number_of])
+            for dim, _, name, members in self.groups
+            if dim == 1
+        ]
+        return names_of_groups(self.path, groups, "curves")
+
+    def _tags(self, dimension: int, names: Container[str]) -> dict[str, int]:
+        return {
+            name: tag for dim, tag, name, _ in self.groups if dim == dimension and name in names
+        }
 
     def _face(self, tag: int, lines: list[Floats]) -> Any:
         """A surface as a polygon of samples: what an odd number of its boundaries encloses."""
@@ -201,11 +205,14 @@ class _Model:
 
 
 def _check_flat(path: Path, said: Mapping[str, Any]) -> None:
-    """Refuse what does not lie in one plane z = constant."""
-    rows = [[tag, p] for tag, p in said["points"].items()]
+    """Refuse what does not lie in one plane z = constant; loose points do not matter."""
+    surfaces = list(said["surfaces"].values())
+    used = {t for s in surfaces for kind in ("curves", "curves_inside") for t in s[kind]}
+    rows = [[t, said["points"][str(t)]] for s in surfaces for t in s["points_inside"]]
     for tag, curve in said["curves"].items():
         places = curve.get("points") or curve.get("control") or []
-        rows += [[f"of curve {tag}", p] for p in places]
+        if int(tag) in used or not surfaces:
+            rows += [[f"of curve {tag}", p] for p in places]
     if not rows:
         return
     xyz = np.array([p for _, p in rows])

@@ -144,6 +144,8 @@ def _curve(model: Any, tag: int) -> dict[str, Any]:
     size = float(np.ptp(samples, axis=0).max())
     conic = _conic(samples, size) if kind in ("Circle", "Ellipse") else None
     if conic is not None:
+        if kind == "Circle" and len(ends) == 2:
+            conic["off"] = _snap(conic["points"], points, size)
         return conic
     knots, pieces = _cubics(path, size)
     control = np.concatenate([pieces[:1, 0], pieces[:, 1:3].reshape(-1, 3), pieces[-1:, 3]])
@@ -152,6 +154,19 @@ def _curve(model: Any, tag: int) -> dict[str, Any]:
         if np.abs(nearest - control[end]).max() <= _SNAP * size:
             control[end] = nearest
     return {"kind": "cubics", "control": control.tolist(), "knots": knots.tolist()}
+
+
+def _snap(arc: list[Any], ends: list[Any], size: float) -> float:
+    """Put an arc's first and last of three points to its ends; how far they were, of its size.
+
+    Three points of a script do not always lie on one circle: Gmsh's arc then misses its end.
+    """
+    off = 0.0
+    for k in (0, 2):
+        nearest = min(ends, key=lambda p: float(np.abs(p - arc[k]).max()))
+        off = max(off, float(np.abs(nearest - arc[k]).max()) / size)
+        arc[k] = np.asarray(nearest).tolist()
+    return off
 
 
 def _conic(samples: Any, size: float) -> dict[str, Any] | None:

@@ -175,8 +175,10 @@ def _includes(token: _Token, starts: bool) -> bool:
 
 def _is_left_out(tokens: list[_Token], at: int) -> bool:
     """Whether a statement is only for the eye, prints, saves, or meshes (``Mesh 2;``)."""
-    word = tokens[at].text
-    return word in _LEFT_OUT or (word == "Mesh" and _next(tokens, at).text.isdigit())
+    word, after = tokens[at].text, _next(tokens, at)
+    if word in ("Show", "Hide"):  # with a text; those of entities have no ; at their end
+        return after.kind == "string"
+    return word in _LEFT_OUT or (word == "Mesh" and after.text.isdigit())
 
 
 def _check_word(path: Path, tokens: list[_Token], at: int, starts: bool) -> None:

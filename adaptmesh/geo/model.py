@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import itertools
 import os
-from collections import deque
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,18 +25,22 @@ from ..curves import Arc, Bezier, BSpline, Curve, EllipticArc, Line
 from ..domain import Domain
 from ..domain_input import Holes, refuse_holes
 from ..drawings.drawing import JOINED
-from ..errors import DomainError, FormatError
+from ..errors import DomainError, FormatError, FormatWarning
 from ..faces import seeds_of
 from ..io.files import read_text
-from ..runs import places_of
 from . import by_gmsh
+from .closed_loops import not_closed, walk_of
 from .expressions import NotReadError
+from .groups import names_of_groups
 from .script import CURVES, Definition, Script, script_of
 
 Floats = NDArray[np.float64]
 
 SAME_RADIUS = 1e-6
 """The ends of a Circle have the same distance from its centre, to this share."""
+
+SIMILAR_RADIUS = 0.1
+"""If not, to this share: an arc through both is taken, with a warning."""
 
 _HALF = 4e-15  # radians by which half a turn may be off by rounding
 
@@ -69,7 +73,7 @@ def read_geo(path: str | os.PathLike[str], holes: Holes = None) -> Domain:
     path = Path(path)
     text = read_text(path)
     try:
-        return _Model.of(script_of(text)).domain(holes)
+        return _Model.of(script_of(text)).domain(path, holes)
     except NotReadError as error:
         return _by_gmsh(path, error, holes)
     except FormatError as error:
@@ -103,6 +107,7 @@ class _Model:
     surface_tags: dict[str, int] = field(default_factory=dict)
     inner_curves: list[int] = field(default_factory=list)
     inner_points: list[int] = field(default_factory=list)
+    heights: dict[float, Definition] = field(default_factory=dict)
 
     @classmethod
     def of(cls, script: Script) -> _Model:
@@ -118,6 +123,7 @@ class _Model:
     def _take(self, d: Definition) -> None:
         if d.kind == "Point":
             self.points[d.number] = _point(d)
+            self.heights.setdefault(d.values[2], d)
         elif d.kind in CURVES and not (d.kind == "Circle" and len(d.values) > 3):
             self.curves[d.number] = _curve(d, self._points_of(d))
         elif d.kind == "Circle":
@@ -166,14 +172,14 @@ class _Model:
 
     def _rectangle(self, d: Definition) -> None:
         if len(d.values) not in (5, 6) or d.values[2] != 0 or (len(d.values) == 6 and d.values[5]):
-            raise FormatError(f"line {d.line}: a Rectangle is {{x, y, 0, width, height}}")
+            raise NotReadError(f"line {d.line}: a Rectangle is {{x, y, 0, width, height}}")
         x, y, _, w, h = d.values[:5]
         corners = [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
         self._surface(d, [Line(corners[k], corners[(k + 1) % 4]) for k in range(4)])
 
     def _disk(self, d: Definition) -> None:
         if len(d.values) not in (4, 5) or d.values[2] != 0:
-            raise FormatError(f"line {d.line}: a Disk is {{x, y, 0, r}} or {{x, y, 0, rx, ry}}")
+            raise NotReadError(f"line {d.line}: a Disk is {{x, y, 0, r}} or {{x, y, 0, rx, ry}}")
         radii = (d.values[3], d.values[-1])
         self._surface(d, [EllipticArc(d.values[:2], radii)])
 
@@ -188,7 +194,8 @@ class _Model:
 
     # -- the domain
 
-    def domain(self, holes: Holes = None) -> Domain:
+    def domain(self, path: Path, holes: Holes = None) -> Domain:
+        self._check_flat()
         used = self._used()
         for k in self.inner_curves:
             if k not in self.curves:
@@ -197,26 +204,34 @@ class _Model:
         if not curves:
             raise DomainError("it has no curves: there is nothing to mesh")
         owner = np.array([k for k in used for _ in self.curves[k]])
-        names = {
-            name: np.flatnonzero(np.isin(owner, numbers))
-            for name, numbers in self.curve_names.items()
-        }
+        by_name = names_of_groups(path, self.curve_names.items(), "curves")
+        names = {name: np.flatnonzero(np.isin(owner, k)) for name, k in by_name.items()}
         faces = {number: self._face(number) for number in self.surfaces}
+        groups = names_of_groups(path, self.surface_names.items(), "surfaces")
         regions: dict[str, Any] = {}
         if faces:
             refuse_holes(holes, "surfaces")
-            holes, regions = seeds_of(faces, self.surface_names)
+            holes, regions = seeds_of(faces, groups)
         isolated = [self.points[k] for k in self.inner_points if k in self.points]
         return Domain.from_curves(
             curves,
             names={name: numbers for name, numbers in names.items() if len(numbers)},
             holes=holes,
             regions=regions,
-            tags=self.curve_tags,
-            region_tags=self.surface_tags,
+            tags={name: tag for name, tag in self.curve_tags.items() if name in names},
+            region_tags={name: tag for name, tag in self.surface_tags.items() if name in regions},
             points=isolated,
             join_tolerance=JOINED * extent_of(curves),
         )
+
+    def _check_flat(self) -> None:
+        """All points lie at one height z, whatever it is."""
+        if len(self.heights) > 1:
+            a, b = list(self.heights.values())[:2]
+            raise NotReadError(
+                f"line {b.line}: Point {b.number} has z = {b.values[2]:g} and Point {a.number} has "
+                f"z = {a.values[2]:g}; a domain lies at one height"
+            )
 
     def _used(self) -> list[int]:
         if not self.surfaces:
@@ -244,53 +259,15 @@ class _Model:
 
         curves = [curve for k in self.loops[loop] for curve in self.curves[k]]
         lines = [np.array([c.start, c.end]) if c.is_straight else c.point(_SAMPLES) for c in curves]
-        walk, stop = _walk(lines)
+        walk, stop = walk_of(lines)
         if stop is not None:
-            raise _not_closed(surface, loop, stop)
+            raise not_closed(surface, loop, stop)
         return shapely.Polygon(np.concatenate([lines[k][:: -1 if back else 1] for k, back in walk]))
-
-
-def _walk(lines: Sequence[Floats]) -> tuple[list[tuple[int, bool]], Floats | None]:
-    """Lines one after the other, each with whether backwards, and where they are not closed."""
-    ends = np.array([line[end] for line in lines for end in (0, -1)])
-    node = places_of(ends, JOINED * float(np.ptp(np.concatenate(lines), axis=0).max()))
-    at: dict[int, deque[int]] = {}
-    for end, place in enumerate(node.tolist()):
-        at.setdefault(place, deque()).append(end)
-    walk: list[tuple[int, bool]] = []
-    is_walked = [False] * len(lines)
-    onward: int | None = 0  # 2k and 2k + 1 are the ends of line k
-    while onward is not None:
-        last = onward ^ 1
-        walk.append((onward // 2, onward % 2 == 1))
-        is_walked[onward // 2] = True
-        onward = _next_end(at[node[last]], is_walked)
-    is_closed = node[last] == node[0] and all(is_walked)
-    return walk, None if is_closed else ends[last]
-
-
-def _next_end(ends: deque[int], is_walked: Sequence[bool]) -> int | None:
-    """The first of the ends at a place whose line is not walked yet; walked ones are dropped."""
-    while ends and is_walked[ends[0] // 2]:
-        ends.popleft()
-    return ends[0] if ends else None
-
-
-def _not_closed(surface: int, loop: int, place: Floats) -> FormatError:
-    x, y = place.tolist()
-    return FormatError(
-        f"curve loop {loop} of surface {surface} is not one closed line: no other curve of it goes "
-        f"on from ({x:g}, {y:g})"
-    )
 
 
 def _point(d: Definition) -> Floats:
     if len(d.values) < 3:
         raise FormatError(f"line {d.line}: Point {d.number} has {len(d.values)} coordinates, not 3")
-    if d.values[2] != 0:
-        raise FormatError(
-            f"line {d.line}: Point {d.number} has z = {d.values[2]:g}; a domain lies in z = 0"
-        )
     return np.array(d.values[:2])
 
 
@@ -314,12 +291,22 @@ def _circle(p: Floats, d: Definition) -> list[Curve]:
     _expect(len(p) == 3, d, "{start, centre, end}")
     start, centre, end = p
     radius, other = np.hypot(*(start - centre)), np.hypot(*(end - centre))
-    if not abs(radius - other) <= SAME_RADIUS * radius:
+    angles = _shorter_way(start - centre, end - centre)
+    if abs(radius - other) <= SAME_RADIUS * radius:
+        return [Arc(centre, radius, *angles)]
+    if not abs(radius - other) <= SIMILAR_RADIUS * radius:
         raise FormatError(
             f"line {d.line}: the ends of Circle {d.number} are {radius:g} and {other:g} from its "
             "centre"
         )
-    return [Arc(centre, radius, *_shorter_way(start - centre, end - centre))]
+    warnings.warn(
+        f"line {d.line}: the ends of Circle {d.number} are {radius:g} and {other:g} from its "
+        "centre: an arc through both is taken",
+        FormatWarning,
+        stacklevel=2,
+    )
+    middle = sum(angles) / 2
+    return [Arc.through(start, centre + radius * np.array([np.cos(middle), np.sin(middle)]), end)]
 
 
 def _whole_circle(d: Definition) -> Curve:

@@ -18,11 +18,13 @@ _TWO_WORDS = {"Curve", "Line", "Plane", "Physical", "Surface", "Characteristic",
 
 _MESHING = """
 Mesh General Geometry Solver View PostProcessing Print Printf Characteristic MeshSize Field
-Background Recombine Transfinite Smoother Show Hide Color Save Coherence Reverse
+Background BoundaryLayer Recombine Transfinite Smoother Show Hide Color Save Coherence Reverse
 """
 
 PASSED_OVER = frozenset(_MESHING.split())
 """First words of statements that say nothing about the domain."""
+
+_END_WITH_BRACE = ("Show", "Hide", "Color")
 
 MOST_DEFINED = 100_000
 """Points, curves and groups that the loops of a script may define."""
@@ -284,7 +286,9 @@ class _Statements(Reader):
         name = self.next().text[1:-1]
         if self.accept(","):
             return name, self.whole(f"the number of {kind} {name!r}")
-        return name, int(self.variables.new("newreg"))
+        groups = [d for d in self.script.definitions if d.kind.startswith("Physical")]
+        like = (d.number for d in groups if (d.kind, d.name) == (kind, name))
+        return name, next(like, 1 + max((d.number for d in groups), default=0))
 
     def _embed(self, kind: str) -> None:
         """Point{1, 2} In Surface{3}; the surface does not matter in a plane."""
@@ -300,11 +304,13 @@ class _Statements(Reader):
         self.script.embedded.append((what, numbers))
 
     def _pass_over(self) -> None:
+        """Go on to the end of a statement: a ``;``, or the ``}`` of ``Hide { Point{1}; }``."""
+        ends_with_brace = self.token.text in _END_WITH_BRACE
         depth = 0
         while True:
             token = self.next()
             depth += (token.text in "{([") - (token.text in "})]") if token.kind == "sign" else 0
             if token.kind == "end":
                 raise self.error("the last statement is not closed by ;")
-            if token.text == ";" and depth <= 0:
+            if depth <= 0 and (token.text == ";" or (ends_with_brace and token.text == "}")):
                 return

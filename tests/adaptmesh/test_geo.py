@@ -1,10 +1,12 @@
 """Gmsh's scripts: the same curves as Gmsh has, names and regions, and what is refused."""
 
+import warnings
+
 import numpy as np
 import pytest
 
 from adaptmesh import generate, read_domain
-from adaptmesh.errors import AdaptmeshError, DomainError, FormatError
+from adaptmesh.errors import AdaptmeshError, DomainError, FormatError, FormatWarning
 from adaptmesh.geo import by_gmsh
 from adaptmesh.geo.model import _Model
 from adaptmesh.geo.script import script_of
@@ -146,7 +148,10 @@ def test_expressions():
     [
         ("", "no curves"),
         ("Point(1) = {0, 0", "line 1.*'}' was expected"),
-        ("Point(1) = {0, 0, 1};", "z = 1"),
+        (
+            "Point(1) = {0, 0, 1}; Point(2) = {1, 0, 0}; Line(1) = {1, 2};",
+            "line 1.*z = 1|not plane",
+        ),
         ("\n\nPoint(1) = {0, 0, x};", "line 3.*'x' is neither"),
         ("Point(1) = {0, 0, 0}; Line(1) = {1, 2};", "point 2, which is not defined"),
         ("Extrude {0, 0, 1} { Surface{1}; }", "'?Extrude"),
@@ -220,3 +225,85 @@ def test_new_numbers_count_all_but_points_together():
     points = _Model.of(script_of(text)).points
     assert [points[k].tolist() for k in (100, 101, 102)] == [[4, 5], [41, 41], [41, 41]]
     assert max(points) == 103
+
+
+SQUARE = """
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Curve Loop(1) = {1:4}; Plane Surface(1) = {1};
+"""
+
+
+@pytest.fixture
+def without_gmsh(monkeypatch):
+    monkeypatch.setattr(by_gmsh, "is_installed", lambda: False)
+
+
+def corners(z, angle=0.3):
+    """Four points of a unit square that is turned, at one height."""
+    c, s = float(np.cos(angle)), float(np.sin(angle))
+    xy = [(0, 0), (c, s), (c - s, s + c), (-s, c)]
+    return "".join(f"Point({k}) = {{{x!r}, {y!r}, {z}}};" for k, (x, y) in enumerate(xy, 1))
+
+
+@pytest.mark.usefixtures("without_gmsh")
+@pytest.mark.parametrize("z", [0, 0.5, -1e6])
+def test_any_one_height(tmp_path, z):
+    domain = read_domain(written(tmp_path, corners(z) + SQUARE))
+    assert domain.area == pytest.approx(1, abs=1e-14)
+
+
+@pytest.mark.usefixtures("without_gmsh")
+def test_two_heights_are_refused(tmp_path):
+    text = corners(0.5).replace("0.5};Point(4)", "0.25};Point(4)")
+    with pytest.raises(FormatError, match=r"Point 3 has z = 0\.25 and Point 1 has z = 0\.5"):
+        read_domain(written(tmp_path, text + SQUARE))
+
+
+@pytest.mark.usefixtures("without_gmsh")
+def test_what_is_in_several_groups_bears_all_names(tmp_path):
+    groups = """
+    Physical Curve("a") = {1, 2}; Physical Curve("b", 12) = {2, -3, 2}; Physical Curve("c") = {4};
+    Physical Curve("a") += {2}; Physical Surface("s") = {1}; Physical Surface("t") = {1};
+    """
+    with pytest.warns(FormatWarning) as caught:
+        domain = read_domain(written(tmp_path, corners(0) + SQUARE + groups))
+    assert [str(w.message).split(": ", 1)[1] for w in caught] == [
+        "curves that are in several physical groups bear the names of all: a|b",
+        "surfaces that are in several physical groups bear the names of all: s|t",
+    ]
+    assert set(domain.names) == {"a", "a|b", "b", "c"}
+    assert {name: domain.names[name] for name in "abc"} == {"a": 1, "b": 12, "c": 13}
+    assert set(domain.region_names) == {"s|t"}
+
+
+@pytest.mark.usefixtures("without_gmsh")
+@pytest.mark.parametrize(
+    "command", ["Hide { Point{1}; }", "Show {Line{1:4};}", "Color Red {Line{1};}"]
+)
+@pytest.mark.parametrize("end", ["", ";"])
+def test_what_ends_with_a_brace_takes_no_more(tmp_path, command, end):
+    """Statements without a semicolon once took the next one with them."""
+    text = corners(0) + SQUARE + command + end + 'Physical Surface("s", 8) = {1};'
+    assert dict(read_domain(written(tmp_path, text)).region_names) == {"s": 8}
+
+
+@pytest.mark.usefixtures("without_gmsh")
+@pytest.mark.parametrize(("radius", "warns"), [(1 + 1e-8, False), (1.004, True), (0.93, True)])
+def test_an_arc_with_ends_on_two_circles(tmp_path, radius, warns):
+    """An arc goes through both of its points, and a warning says so."""
+    text = f"""
+    Point(1) = {{3, 4, 0}}; Point(2) = {{4, 4, 0}}; Point(3) = {{3, {4 + radius!r}, 0}};
+    Circle(1) = {{2, 1, 3}}; Line(2) = {{3, 1}}; Line(3) = {{1, 2}};
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        domain = read_domain(written(tmp_path, text))
+    assert bool(caught) == warns
+    assert np.pi / 4 * min(1, radius) ** 2 <= domain.area <= np.pi / 4 * max(1, radius) ** 2
+    assert generate(domain, 0.2).validate()
+
+
+def test_an_arc_with_ends_far_from_one_circle(tmp_path):
+    text = "Point(1)={0,0,0}; Point(2)={1,0,0}; Point(3)={0,1.2,0}; Circle(1)={2,1,3};"
+    with pytest.raises(FormatError, match=r"1 and 1\.2 from its centre"):
+        read_domain(written(tmp_path, text))

@@ -128,7 +128,7 @@ def test_what_our_reader_does_not_know(tmp_path, name, capfd):
     text, area, regions = SCRIPTS[name]
     path = written(tmp_path, text)
     with pytest.raises(FormatError):
-        model._Model.of(script_of(text)).domain()
+        model._Model.of(script_of(text)).domain(tmp_path)
     domain = read_domain(path)
     assert domain.area == pytest.approx(area, rel=1e-9)
     assert set(domain.region_names) == set(regions)
@@ -346,3 +346,26 @@ def test_what_is_left_out(tmp_path):
     assert script.left_out["Save"] == 1
     assert script.left_out["View"] == 3
     assert script.text.count("\n") == 5
+
+
+@needs_gmsh
+def test_arcs_that_miss_their_ends(tmp_path):
+    """Of points that are not on one circle; the arc goes through both, as without Gmsh."""
+    circle = """
+    Point(1) = {3, 4, 0}; Point(2) = {4, 4, 0}; Point(3) = {3, 5.004, 0}; Point(9) = {0, 0, 7};
+    Circle(1) = {2, 1, 3}; Line(2) = {3, 1}; Line(3) = {1, 2};
+    Curve Loop(1) = {1, 2, 3}; Plane Surface(1) = {1};
+    """
+    domains = []
+    for more in ("", "Macro M\nReturn\n"):
+        text = circle if more else circle.replace("Point(9) = {0, 0, 7};", "")
+        with pytest.warns(FormatWarning, match="arcs? through both"):
+            domains.append(read_domain(written(tmp_path, text + more)))
+    own, other = (domain.area for domain in domains)
+    assert other == pytest.approx(own, rel=1e-9)
+
+
+@needs_gmsh
+def test_show_and_hide_take_a_text(tmp_path):
+    text = SQUARE + 'Show "*"; Macro M\nReturn\nHide "*"; Physical Surface("s", 3) = {1};'
+    assert dict(read_domain(written(tmp_path, text)).region_names) == {"s": 3}
