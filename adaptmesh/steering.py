@@ -219,7 +219,7 @@ class Steering:
         if self.error is not None:
             counts = [*(it.n_points for it in earlier), n_points]
             excesses = [*(self.excess(it.errors) for it in earlier), self.excess(errors)]
-            wanted = next_count(counts, excesses, self.order)
+            wanted = next_count(counts, excesses, self.order, self.growth)
             wanted = min(wanted, SHARE_OF_BUDGET * self.max_vertices)
         elif self.target_vertices is not None:
             wanted = self.target_vertices

@@ -45,6 +45,28 @@ def test_the_answer_lies_between_a_mesh_too_coarse_and_one_too_fine():
     assert next_count([100], [1.0], 1.0) == pytest.approx(100)
 
 
+@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("memory", [0.0, 0.3, 0.5, 0.6])
+@pytest.mark.parametrize("start", [0.1, 3.0, 300.0])
+def test_errors_that_depend_on_the_mesh_before_settle(order, memory, start):
+    """What is seen on one mesh shapes the next: a part of the error is that of the mesh before."""
+    wanted, growth = 100.0, 4.0
+    counts, errors = [wanted * start], [start**-order]
+    for _ in range(25):
+        n = next_count(counts, errors, 1.0, growth)
+        n = min(max(n, counts[-1] / growth), counts[-1] * growth)
+        seen = (n / wanted) ** (1 - memory) * (counts[-1] / wanted) ** memory
+        counts.append(n)
+        errors.append(seen**-order)
+    assert max(errors[-4:]) < 1.5 and min(errors[-4:]) > 1 / 1.5
+
+
+def test_steps_are_bounded_by_growth():
+    for growth in (1.01, 1.5, 4.0):
+        assert next_count([100], [1e3], 1.0, growth) == pytest.approx(100 * growth)
+        assert next_count([100], [1e-3], 1.0, growth) == pytest.approx(100 / growth)
+
+
 @pytest.mark.parametrize("excess", [0.0, 1e-300, 1e300, np.inf])
 def test_extreme_errors_give_a_number(excess):
     assert np.isfinite(next_count([100, 120], [2.0, excess], 1.0))
