@@ -330,7 +330,7 @@ def test_circles_that_touch_but_for_rounding_are_refused(shift):
 @pytest.mark.parametrize(
     ("curves", "message"),
     [
-        (Circle((0, 0), 1), "a sequence of curves is wanted"),
+        (Circle((0, 0), 1), "expected a sequence of curves"),
         (
             [Parametric(lambda t: 1e80 * Circle((0, 0), 1).point(t), closed=True)],
             "choose another unit of length",

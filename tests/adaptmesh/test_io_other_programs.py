@@ -1,6 +1,7 @@
 """Files of other programs and versions: what is read of them, and the words where it is not all."""
 
 import contextlib
+import re
 import warnings
 
 import numpy as np
@@ -350,6 +351,9 @@ def test_fields_at_edges_of_an_xdmf_are_passed_over_with_a_word(tmp_path):
     pytest.importorskip("h5py")
     io.write(tmp_path / "a.xdmf", am.Mesh(POINTS, TRIANGLES), u=np.arange(4))
     text = (tmp_path / "a.xdmf").read_text()
+    text = re.sub(
+        r'<Information Name="counts".*/>', "", text
+    )  # the counts, as of a file that is not ours
     (tmp_path / "a.xdmf").write_text(text.replace('Center="Node"', 'Center="Edge"'))
     with pytest.warns(FormatWarning, match="'u' is passed over: it is given at 'Edge'"):
         assert_square(io.read(tmp_path / "a.xdmf"))

@@ -7,6 +7,7 @@ import pytest
 from reference.whole_files import WHOLE, wheel
 
 import adaptmesh as am
+import metrics
 from adaptmesh import io
 from adaptmesh.domain_io import OUTLINE_SUFFIXES
 from adaptmesh.errors import FormatError
@@ -33,8 +34,8 @@ COMMENTS = {
 def texts():
     """Every way to write a file of text, and the encodings that its reader has to take."""
     for suffix, ways in WHOLE.items():
-        if suffix in (".shp", ".dxf", ".meshb", ".solb"):
-            continue  # binary; DXF says its encoding in its header
+        if suffix in (".shp", ".dxf", ".meshb", ".solb") or suffix.startswith("history"):
+            continue  # binary, or only ours; DXF says its encoding in its header
         for way in ways:
             if way in ("ours", "4.1", "2.2", "5.1", "raw") and suffix in (".vtk", ".msh", ".vtu"):
                 continue
@@ -47,6 +48,9 @@ def read(path):
     """Arrays and names that a file holds."""
     if path.suffix in (".sol", ".solb"):
         return [io.read_sol(path)], {}
+    if path.suffix == ".mtr":
+        carried = metrics.read(path)
+        return [carried(carried.points)], {}
     if path.suffix in OUTLINE_SUFFIXES:
         domain = am.read_domain(path)
         return [domain.points, domain.segments, domain.segment_tags], domain.names
