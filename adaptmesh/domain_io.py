@@ -45,7 +45,8 @@ def read_domain(path: str | os.PathLike[str], *, holes: Holes = None) -> Domain:
                        subdomains as regions.
     .poly              Triangle's format, with holes; boundary markers other than 0 become names
                        of edges, and the attributes of region seeds become names of regions.
-    anything else      A mesh that `adaptmesh.read` can read: its domain.
+    anything else      A mesh that `adaptmesh.read` can read: its domain. Of files with edges and
+                       no triangles, such as geometries of JIGSAW, what the edges enclose.
     ================== ==========================================================================
 
     Parameters
@@ -116,8 +117,8 @@ def read_raw(
         return reader(path)
 
 
-def _domain_of_mesh_file(path: Path) -> Domain:
-    from .io import FORMATS, read
+def _domain_of_mesh_file(path: Path) -> Domain | Outline:
+    from .io import FORMATS, read_mesh_or_outline
 
     if path.suffix.lower() not in FORMATS:
         raise FormatError(
@@ -125,8 +126,10 @@ def _domain_of_mesh_file(path: Path) -> Domain:
             f"{', '.join(OUTLINE_SUFFIXES)}, and of meshes, {', '.join(FORMATS)}"
         )
 
-    mesh = read(path)
-    return Domain.of_mesh(mesh) if mesh.domain is None else mesh.domain
+    found = read_mesh_or_outline(path)
+    if isinstance(found, Outline):
+        return found
+    return Domain.of_mesh(found) if found.domain is None else found.domain
 
 
 _READERS: dict[str, Callable[[Path], Domain | Outline | Drawing | list[Shape]]] = {

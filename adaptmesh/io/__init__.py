@@ -28,12 +28,14 @@ from metrics.control import Metric
 from ..errors import FormatError, FormatWarning
 from ..mesh import Mesh
 from ..parts import seeds_in
+from ..raw import Outline
 from ..required import required_items
 from .content import Array, fields_of, mesh_of
 from .files import read_bytes, replace_files
 from .formats import FORMATS, Format, format_of
 from .located import located, only_our_errors
 from .outgoing import outgoing, solution_values
+from .outlines import outline_of
 from .periodic_sides import periodic_rows
 from .second_order import with_corners_only
 
@@ -73,6 +75,16 @@ def read(path: PathLike) -> Mesh:
         content = with_corners_only(format_of(path).load(path, False))
         with located(path):
             return mesh_of(content)
+
+
+def read_mesh_or_outline(path: PathLike) -> Mesh | Outline:
+    """The mesh of a file, or, where it has edges and no triangles, these as an outline."""
+    path = Path(path)
+    with only_our_errors(path):
+        content = with_corners_only(format_of(path).load(path, False))
+        with located(path):
+            is_outline = len(content.edges) and not len(content.triangles)
+            return outline_of(content) if is_outline else mesh_of(content)
 
 
 def read_fields(path: PathLike) -> dict[str, Array]:

@@ -67,7 +67,7 @@ def mesh_of(content: Content) -> Mesh:
     Clockwise triangles are turned over (their last two vertices are exchanged): the order in
     which a file lists the vertices says nothing about the geometry. Nothing else is changed.
     """
-    points = _planar(content.points)
+    points = planar(content.points)
     triangles = np.asarray(content.triangles, dtype=np.int64)
     if not len(triangles):
         raise FormatError("holds no triangles")
@@ -146,7 +146,8 @@ def check_finite(points: Array) -> None:
         raise FormatError(f"point {bad[0]} is {tuple(points[bad[0]].tolist())}, not finite")
 
 
-def _planar(points: Array) -> Array:
+def planar(points: Array) -> Array:
+    """Points without a z that is everywhere the same; a `FormatError` names one that is off."""
     points = np.asarray(points, dtype=np.float64)
     check_finite(points)
     if points.shape[1] == 3:

@@ -7,9 +7,11 @@
     EDGE2=4                  vertex;vertex;id          vertices from 0
     TRIA3=2                  vertex;vertex;vertex;id
     VALUE=4;1                a field at the points
-    POWER=4;1 SEEDS=... BOUND=... and others are passed over
+    BOUND=8                  part;edge;kind      edges from 0, that bound each part of a geometry
+    POWER=4;1 SEEDS=... and others are passed over
 
-Ids of edges are tags, those of triangles regions. Source: the readers of JIGSAW,
+Ids of edges are tags, those of triangles regions. Parts of a geometry are regions: each is what
+its edges enclose an odd number of times. Source: the readers of JIGSAW,
 <https://github.com/dengwirda/jigsaw>.
 """
 
@@ -21,7 +23,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..errors import FormatError
-from .content import Array, Content, refuse_cells
+from ..faces import seeds_of
+from .content import Array, Content, check_vertices, refuse_cells
 from .files import text_of
 from .located import located
 from .records import TextCursor
@@ -37,6 +40,7 @@ _TABLE = re.compile(r"([A-Za-z]\w*)\s*=\s*(.*)")
 def decode(data: bytes) -> Content:
     """What the file says."""
     points, values = np.empty((0, 2)), None
+    bounds = np.empty((0, 3), np.int64)
     cells = {name: np.empty((0, width), np.int64) for name, width in _CELLS.items()}
     for keyword, head, rows in _tables(text_of(data)):
         with located(keyword):
@@ -50,14 +54,41 @@ def decode(data: bytes) -> Content:
                 cells[keyword] = _numbers(rows, _count(head), _CELLS[keyword], "i8")
             elif keyword in _OTHER_CELLS:
                 refuse_cells({_OTHER_CELLS[keyword]: _count(head)})
+            elif keyword == "BOUND":
+                bounds = _numbers(rows, _count(head), 3, "i8")
             elif keyword == "VALUE":
                 count, width = (_count(word) for word in (head + ";1").split(";")[:2])
                 values = _numbers(rows, count, width, "f8")
     edges, triangles = cells["EDGE2"], cells["TRIA3"]
     content = Content(points, triangles[:, :3], triangles[:, 3], edges[:, :2], edges[:, 2])
+    if len(bounds) and not len(triangles):
+        with located("BOUND"):
+            content.hole_seeds, content.region_seeds = _seeds(points, edges[:, :2], bounds)
     if values is not None and len(values) == len(points):
         content.point_fields["value"] = values[:, 0] if values.shape[1] == 1 else values
     return content
+
+
+def _seeds(points: Array, edges: Array, bounds: Array) -> tuple[Array, dict[int, Array]]:
+    """Points in what no part covers, and in each part, by its number."""
+    import shapely
+
+    check_vertices("edge", edges, len(points))
+    wrong = np.flatnonzero((bounds[:, 1] < 0) | (bounds[:, 1] >= len(edges)))
+    if len(wrong):
+        raise FormatError(
+            f"row {wrong[0]} has edge {bounds[wrong[0], 1]}, but the edges are numbered from 0 to "
+            f"{len(edges) - 1}"
+        )
+    faces = {}
+    for part in np.unique(bounds[:, 0]).tolist():
+        sides = edges[bounds[bounds[:, 0] == part, 1]]
+        faces[part] = shapely.build_area(shapely.MultiLineString(list(points[sides])))
+        if faces[part].is_empty:
+            raise FormatError(f"the edges of part {part} are not closed")
+    holes, regions = seeds_of(faces, {str(part): [part] for part in faces})
+    seeds = {int(part): np.array(places) for part, places in regions.items() if part != "0"}
+    return np.array(holes).reshape(-1, 2), seeds
 
 
 def _tables(text: str) -> Iterator[tuple[str, str, list[str]]]:

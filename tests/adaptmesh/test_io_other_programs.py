@@ -6,6 +6,8 @@ import warnings
 
 import numpy as np
 import pytest
+import shapely
+from reference.transforms import TRANSFORMS
 
 import adaptmesh as am
 from adaptmesh import io
@@ -364,3 +366,83 @@ def test_nothing_is_warned_of_what_is_kept(tmp_path):
         warnings.simplefilter("error")
         for version, text in MSH.items():
             io.read(written(tmp_path, text, f"{version}.msh"))
+
+
+# --------------------------------------------------------- edges without triangles: an outline
+
+OUTER = [[0, 0], [2, 0], [2, 1], [0, 1]]
+INNER = [[0.5, 0.25], [1.5, 0.25], [1.5, 0.75], [0.5, 0.75]]
+RINGS = np.array([*OUTER, *INNER])
+SIDES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)]
+
+
+def jigsaw_geometry(transform, bounds=()):
+    """A rectangle with another in it, of edges with the tags 1 and 2, perhaps in parts."""
+    points = [f"{x!r};{y!r};0" for x, y in transform(RINGS).tolist()]
+    edges = [f"{a};{b};{1 + k // 4}" for k, (a, b) in enumerate(SIDES)]
+    tables = {"point": points, "edge2": edges}
+    if bounds:
+        tables["bound"] = [f"{part};{edge};20" for part, edge in bounds]
+    head = "# of a program\nmshid=3;EUCLIDEAN-MESH\nndims=2\n"
+    return head + "".join(f"{k}={len(v)}\n" + "\n".join(v) + "\n" for k, v in tables.items())
+
+
+@pytest.mark.parametrize("transform", TRANSFORMS, ids=str)
+def test_a_geometry_of_jigsaw_is_a_domain(tmp_path, transform):
+    path = written(tmp_path, jigsaw_geometry(transform))
+    domain = am.read_domain(path)
+    size = shapely.Polygon(transform(RINGS[:4])).area
+    assert domain.area == pytest.approx(0.75 * size, rel=1e-8)
+    assert np.unique(domain.segment_tags).tolist() == [1, 2]
+    with pytest.raises(FormatError, match="no triangles"):
+        io.read(path)
+
+
+@pytest.mark.parametrize("transform", TRANSFORMS, ids=str)
+def test_parts_of_a_geometry_are_regions(tmp_path, transform):
+    parts = [(5, k) for k in range(8)] + [(6, k) for k in range(4, 8)]
+    domain = am.read_domain(written(tmp_path, jigsaw_geometry(transform, parts)))
+    size = shapely.Polygon(transform(RINGS[:4])).area
+    mesh = am.generate(domain, np.sqrt(size) / 3)
+    areas = {r: mesh.areas[mesh.regions == r].sum() for r in np.unique(mesh.regions).tolist()}
+    assert areas == {5: pytest.approx(0.75 * size, rel=1e-8), 6: pytest.approx(size / 4, rel=1e-8)}
+
+
+@pytest.mark.parametrize(
+    ("bounds", "says"),
+    [
+        ([(1, 0), (1, 8)], "BOUND: row 1 has edge 8, but the edges are numbered from 0 to 7"),
+        ([(1, 0), (1, 1)], "BOUND: the edges of part 1 are not closed"),
+    ],
+)
+def test_parts_that_are_none(tmp_path, bounds, says):
+    with pytest.raises(FormatError, match=says):
+        am.read_domain(written(tmp_path, jigsaw_geometry(lambda p: p, bounds)))
+
+
+@pytest.mark.parametrize("suffix", [".msh", ".mesh", ".vtk", ".vtu"])
+def test_meshes_of_lines_are_domains(tmp_path, suffix):
+    """Of the border only, as meshio and others write it."""
+    pairs = np.array(SIDES)
+    texts = {
+        ".msh": "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n"
+        + "".join(f"{k} {x} {y} 0\n" for k, (x, y) in enumerate(RINGS, 1))
+        + "$EndNodes\n$Elements\n8\n"
+        + "".join(f"{k} 1 2 {1 + (k > 4)} 1 {a + 1} {b + 1}\n" for k, (a, b) in enumerate(SIDES, 1))
+        + "$EndElements\n",
+        ".mesh": "MeshVersionFormatted 2\nDimension 2\nVertices\n8\n"
+        + "".join(f"{x} {y} 0\n" for x, y in RINGS)
+        + "Edges\n8\n"
+        + "".join(f"{a + 1} {b + 1} {1 + k // 4}\n" for k, (a, b) in enumerate(SIDES))
+        + "End\n",
+    }
+    path = tmp_path / f"a{suffix}"
+    if suffix in texts:
+        path.write_text(texts[suffix])
+    else:
+        meshio = pytest.importorskip("meshio")
+        points = np.column_stack([RINGS, np.zeros(8)])
+        meshio.Mesh(points, [("line", pairs)]).write(path)
+    domain = am.read_domain(path)
+    assert domain.area == pytest.approx(1.5)
+    assert len(domain.segments) == 8
