@@ -368,8 +368,10 @@ class Domain(Value):
             8 units in the last place of the largest coordinate; half a unit of the last decimal
             digit, or of float32, where all coordinates have no more digits than that (at least 8
             different values, whose last digit is mostly not zero, and a unit smaller than 1/20 of
-            the shortest edge of the border or 1e-5 of the extent). Deviations that are larger than
-            the tolerance are corners, however small the angle.
+            the shortest edge of the border or 1e-5 of the extent); or, where coordinates were
+            turned or scaled since, 8 times what neighbours on the border are off, mostly to
+            opposite sides (at least 24 pairs of them, off by less than 4e-6 of the extent).
+            Deviations that are larger than the tolerance are corners, however small the angle.
 
         Raises
         ------

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .bend_noise import DOUBTS, bend_noise
 from .coordinate_digits import digits_of
 from .errors import DomainError
 
@@ -67,11 +68,17 @@ class Straightness:
 
     @classmethod
     def of(cls, points: Floats, edges: Ints) -> Straightness:
-        """By the digits of coordinates: a vertex is off by their error, and so is the line."""
+        """By the digits of coordinates: a vertex is off by their error, and so is the line.
+
+        Where vertices are off by more than digits explain, by how they are.
+        """
         vector = np.diff(points[edges], axis=1)[:, 0]
         shortest = float(np.hypot(*vector.T).min())
         digits = digits_of(points, shortest)
         exact, found = cls.exact(points), cls(2 * digits.error, digits.why)
+        noise = bend_noise(points, edges, exact.tolerance / 8, shortest)
+        if noise is not None and noise > max(exact.tolerance / 4, 1.5 * digits.error):
+            return cls(DOUBTS * noise, "neighbours off to either side, as rounding leaves them")
         return found if exact.tolerance < found.tolerance <= shortest else exact
 
     def found(self, corners: int, vertices: int) -> CornersFound:
