@@ -32,6 +32,7 @@ from .cli_arguments import (
     MeshFile,
     Metric,
     MetricField,
+    NoHoles,
     OffLines,
     OutlineFile,
     Output,
@@ -122,6 +123,7 @@ def generate(
     tolerance: Tolerance = None,
     simplify: Simplify = None,
     straight_tolerance: StraightTolerance = None,
+    no_holes: NoHoles = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
@@ -135,11 +137,15 @@ def generate(
             raise typer.BadParameter("--tolerance is that of --repair")
         if straight_tolerance is not None and (repair or is_outline(domain)):
             raise typer.BadParameter("--straight-tolerance is for the border of a mesh")
+        if no_holes and (repair or not is_outline(domain)):
+            raise typer.BadParameter("--no-holes is for drawings and scripts, without --repair")
         request = Request(size, metric, metric_field)
         request.refuse_empty()
         if repair or is_outline(domain):
             request.refuse_without_mesh()
-        outline, carrier = outline_and_mesh(domain, repair, tolerance, straight_tolerance, speaker)
+        outline, carrier = outline_and_mesh(
+            domain, repair, tolerance, straight_tolerance, no_holes, speaker
+        )
         control = request.control_space(carrier)
         if simplify is not None:
             outline, dropped = am.simplify(outline, control, share=simplify)

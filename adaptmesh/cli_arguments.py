@@ -149,6 +149,13 @@ Simplify = Annotated[
         help="Leave out detail of the outline smaller than this share of the size, e.g. 0.1.",
     ),
 ]
+NoHoles = Annotated[
+    bool,
+    typer.Option(
+        "--no-holes",
+        help="All that the lines of a drawing, or of a script without surfaces, enclose is meshed.",
+    ),
+]
 StraightTolerance = Annotated[
     float | None,
     typer.Option(

@@ -45,6 +45,7 @@ def outline_and_mesh(
     repair: bool,
     tolerance: float | None,
     straight_tolerance: float | None,
+    no_holes: bool,
     speaker: Speaker,
 ) -> tuple[Domain, Mesh | None]:
     """The domain in a file, and the mesh that it is the domain of, if the file holds one."""
@@ -56,7 +57,7 @@ def outline_and_mesh(
         speaker.note(repairs=[vars(r) for r in repairs])
         return domain, None
     if is_outline(path):
-        return am.read_domain(path), None
+        return am.read_domain(path, holes=[] if no_holes else None), None
     mesh = am.read(path)
     return am.Domain.of_mesh(mesh, straight_tolerance=straight_tolerance), mesh
 

@@ -15,7 +15,7 @@ from .chords import Surroundings, chords_along
 from .curves import Curve
 from .domain_input import Floats, Inside, Ints, read_only
 from .errors import DomainError
-from .runs import Run, are_near, join, name_of_curve, points_on
+from .runs import Run, are_near, join, length_of, name_of_curve, points_on
 from .value import Value
 
 JOINED = 1e-12
@@ -255,7 +255,7 @@ def _check_extents(
     extent = np.maximum.reduceat(places, first) - np.minimum.reduceat(places, first)
     extent, far = extent.max(axis=1), np.maximum.reduceat(np.abs(places).max(axis=1), first)
     for i in np.flatnonzero(extent <= IN_PLACES * np.finfo(float).eps * far).tolist():
-        if 2 * extent[i] > join_tolerance or curves[i].is_closed:
+        if curves[i].is_closed or length_of(curves[i]) > join_tolerance:
             raise DomainError(
                 f"{name_of_curve(curves, i)} is {extent[i]:.3g} long or wide, and coordinates of "
                 f"{far[i]:g} are rounded to {np.spacing(far[i]):.1g}: move the origin near it"

@@ -234,18 +234,23 @@ def _vanishes(
     curve = curves[piece.curve]
     if start != end or (curve.is_closed and piece.t1 - piece.t0 == 1):
         return False
-    p = curve.point(np.linspace(piece.t0, piece.t1, LOOKS + 1))
-    length = float(np.hypot(*np.diff(p, axis=0).T).sum())
+    length = length_of(curve, piece.t0, piece.t1)
     if length <= tolerance:
         return True
     if not curve.is_straight:
         return False
-    (x0, y0), (x1, y1) = p[[0, -1]].tolist()
+    (x0, y0), (x1, y1) = curve.point(np.array([piece.t0, piece.t1])).tolist()
     raise DomainError(
         f"{name_of_curve(curves, piece.curve)} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}) is "
         f"{length:.3g} long, but both its ends are one place with join_tolerance={tolerance:g}, as "
         "shorter curves lie between them: choose a smaller join_tolerance"
     )
+
+
+def length_of(curve: Curve, t0: float = 0.0, t1: float = 1.0) -> float:
+    """The length of a piece of a curve, about, by that of chords."""
+    p = curve.point(np.linspace(t0, t1, LOOKS + 1))
+    return float(np.hypot(*np.diff(p, axis=0).T).sum())
 
 
 def _ends(curves: Sequence[Curve], pieces: list[Piece], which: int) -> Floats:

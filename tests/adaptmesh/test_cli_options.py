@@ -115,6 +115,17 @@ def test_generate_simplifies_on_request_only(run):
     assert am.measure(after, 0.3).length_min > 0.5
 
 
+def test_holes_of_a_drawing_are_none_on_request(run):
+    inner = "M1,1 h1 v1 h-1 z"
+    Path("a.svg").write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg"><path d="M0,0 h3 v3 h-3 z {inner}"/></svg>'
+    )
+    arguments = ("generate", "a.svg", "-s", "0.5", "-o", "out.vtu")
+    for more, area in (((), 8), (("--no-holes",), 9)):
+        done(run(*arguments, *more))
+        assert am.read("out.vtu").areas.sum() == pytest.approx(area)
+
+
 JUMP = "0.4 - 0.37*(x > 2)"
 
 
@@ -267,6 +278,7 @@ def test_plot_of_an_outline_numbers_its_points_and_sides(run, monkeypatch):
         ("generate", "plate.geojson", "-s", "1", "-o", "out.vtu", "--gradation", "1"),
         ("generate", "plate.geojson", "-s", "1", "-o", "out.vtu", "--simplify", "nan"),
         ("generate", "plate.geojson", "-s", "1", "-o", "out.vtu", "--straight-tolerance", "1"),
+        ("generate", "plain.vtu", "-s", "1", "-o", "out.vtu", "--no-holes"),
         ("adapt", "plain.vtu", "-s", "1", "-o", "out.vtu", "--merge", "nan"),
         ("check", "plain.vtu", "--tolerance", "nan"),
         ("convert", "plain.vtu", "out.vtu", "--merge", "inf"),

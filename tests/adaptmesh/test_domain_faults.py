@@ -48,8 +48,9 @@ def outline(transform, gap):
 
 @pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
 @pytest.mark.parametrize("gap", [1e-3, 3e-7])
-def test_curves_shorter_than_the_join_tolerance_vanish(transform, gap):
-    tolerance = 3 * gap * transform.scale
+@pytest.mark.parametrize("ratio", [1.01, 3])
+def test_curves_shorter_than_the_join_tolerance_vanish(transform, gap, ratio):
+    tolerance = ratio * gap * transform.scale
     domain = am.Domain.from_curves(
         outline(transform, gap), names={"short": [4], "side": [3]}, join_tolerance=tolerance
     )
@@ -60,7 +61,9 @@ def test_curves_shorter_than_the_join_tolerance_vanish(transform, gap):
     assert len(mesh.edges_named("short")) == 0
     assert len(mesh.edges_named("side")) > 1
     if gap > 1e-6:  # a shorter one that stays would be refused far from the origin
-        longer = am.Domain.from_curves(outline(transform, gap), join_tolerance=0.3 * tolerance)
+        longer = am.Domain.from_curves(
+            outline(transform, gap), join_tolerance=0.9 * gap * transform.scale
+        )
         assert len(longer.points) == 5
 
 
