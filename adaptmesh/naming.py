@@ -11,13 +11,17 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .domain_input import ByLabel, Label, check_is_mapping, checked_points
 from .errors import DomainError
+
+if TYPE_CHECKING:
+    import shapely
 from .value import Value
 
 Floats = NDArray[np.float64]
@@ -59,6 +63,18 @@ class Sides:
     def paths(self) -> Floats:
         """Each side as a polyline, (k, s + 2, 2)."""
         return np.concatenate([self.ends[:, :1], self.places, self.ends[:, 1:]], axis=1)
+
+    @cached_property
+    def extent(self) -> float:
+        """The longer side of the box around the paths."""
+        return float(np.ptp(self.paths.reshape(-1, 2), axis=0).max())
+
+    @cached_property
+    def tree(self) -> shapely.STRtree:
+        """A search tree of the paths."""
+        import shapely
+
+        return shapely.STRtree(shapely.linestrings(self.paths))
 
     def whole(self, holds: Bools, name: Label) -> Bools:
         """Which sides a condition (k, s) holds on; a `DomainError` if on a part of one only."""
@@ -118,12 +134,12 @@ class Nearest(Selector):
         """See `Selector`."""
         import shapely
 
-        lines = shapely.linestrings(sides.paths)
         out = np.zeros(len(sides), bool)
-        extent = float(np.ptp(sides.paths.reshape(-1, 2), axis=0).max())
         for x, y in self.points.tolist():
-            distance = shapely.distance(lines, shapely.Point(x, y))
-            near = np.flatnonzero(distance <= distance.min() + SAME * extent)
+            place = shapely.Point(x, y)
+            nearest_of_all = sides.tree.geometries[sides.tree.nearest(place)]
+            reach = float(shapely.distance(nearest_of_all, place)) + SAME * sides.extent
+            near = np.sort(sides.tree.query(place, predicate="dwithin", distance=reach))
             if len(near) > 1:
                 a, b = (sides.describe(int(i)) for i in near[:2])
                 raise DomainError(

@@ -1,5 +1,7 @@
 """Names for sides that are chosen by where they are."""
 
+import time
+
 import numpy as np
 import pytest
 import shapely
@@ -210,3 +212,17 @@ def test_a_condition_is_not_asked_at_ends_and_may_not_change_what_it_is_given():
     assert with_line.segment_tags.tolist() == [0, 0, 0, 0, 1]
     with pytest.raises(am.DomainError, match="given to nothing"):
         with_line.with_names({"inner": am.facing((1, -1), within=5)})
+
+
+def test_thousands_of_nearest_sides_take_time_in_proportion():
+    seconds = {}
+    for n in (500, 2000):
+        angle = np.linspace(0, 2 * np.pi, n, endpoint=False)
+        ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        middles = 0.5 * (ring + np.roll(ring, -1, axis=0))
+        names = {f"side {k}": am.nearest(place) for k, place in enumerate(middles)}
+        start = time.process_time()
+        domain = am.Domain.polygon(ring, names=names)
+        seconds[n] = time.process_time() - start
+        assert domain.segment_tags.tolist() == list(range(1, n + 1))
+    assert seconds[2000] < 10 * max(seconds[500], 0.1)  # in n squared, 16 times
