@@ -297,7 +297,8 @@ class Domain(Value):
         -----
         `points`, `segments` and `triangles` of the domain are a polygon inscribed in the curves;
         `curved` tells which of its points are on which curve. `area` is that between the true
-        curves.
+        curves. Distances to ``points[segments]`` are those to the polygon, which may be off the
+        curves by far more than a first height or a small size: give `sides` to what measures them.
 
         Examples
         --------
