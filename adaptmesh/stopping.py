@@ -12,6 +12,9 @@ from .history import History, Iteration
 from .steering import Steering
 
 AGREE = 3  # so many iterations in a row that agree are the end
+COARSENED = 1.1  # a mesh with so many times the vertices of another is finer
+FAR_BELOW = 0.5  # of the error asked for: a mesh that could be coarsened further
+LOST = 2.0  # an error that is so many times smaller on a coarser mesh is not seen there
 UNIFORM = 0.05  # how near to the vertices asked for a mesh of one size is taken as it is
 
 
@@ -76,6 +79,9 @@ class StoppingRule:
             short = steering.error is not None and (
                 steering.excess(history[-1].errors) > 1 + self.tolerance
             )
+            lost = self._lost(history, steering)
+            if lost:
+                return history.ended(lost, False)
             if not short:
                 return history.ended(
                     f"the last {AGREE} meshes agree within {100 * self.tolerance:g} %", True
@@ -94,7 +100,7 @@ class StoppingRule:
     def _nothing_to_reduce(self, history: History, steering: Steering) -> bool:
         """Whether linear fields steer, and the mesh has the vertices asked for."""
         last = history[-1]
-        if not last.errors or any(last.errors.values()):
+        if not last.errors or any(any(it.errors.values()) for it in history.for_options):
             return False
         if last.snapshot.solved.metric is not None:
             return False
@@ -102,6 +108,26 @@ class StoppingRule:
         return target is None or (
             len(history.for_options) > 1
             and abs(last.n_points - target) <= max(self.tolerance, UNIFORM) * target
+        )
+
+    def _lost(self, history: History, steering: Steering) -> str:
+        """What to say if a feature has fallen between the vertices of a mesh that was coarsened.
+
+        Errors grow as a mesh is coarsened. One that is far below what was asked for, and was much
+        larger on a finer mesh of this loop, is not small: it is no longer seen.
+        """
+        if steering.error is None:
+            return ""
+        last = history[-1]
+        now = steering.excess(last.errors)
+        finer = [it for it in history.for_options if it.n_points > COARSENED * last.n_points]
+        before = max((steering.excess(it.errors) for it in finer), default=0.0)
+        if now > FAR_BELOW or before <= LOST * now:
+            return ""
+        return (
+            f"the error was {before:.3g} times the one asked for on a finer mesh, and is {now:.3g} "
+            f"times on the last, of {last.n_points} vertices: a feature has probably fallen "
+            "between them; lower h_max, or ask for a smaller error"
         )
 
     def agree(self, iterations: Sequence[Iteration]) -> bool:

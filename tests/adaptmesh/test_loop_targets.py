@@ -157,6 +157,29 @@ def test_a_slight_bend_is_not_taken_for_none(start):
     assert (history.errors["solution"] > 0).all()
 
 
+@pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
+def test_a_feature_that_falls_between_the_vertices_is_no_convergence(transform):
+    """The bump is seen on the first mesh, and by no vertex of the coarse one asked for."""
+    ring = [(0, 0), (1.42, 1.44), (0.54, 2.28), (-0.52, 0.86)]
+    mesh = am.generate(am.Domain.polygon(transform(ring)), 0.15 * transform.scale)
+
+    def solve(m):
+        x = transform.inverse(m.points)
+        return 5 * x[:, 0] + np.exp(-((x - 0.5) ** 2).sum(axis=1) / 0.005)
+
+    history = am.adapt_loop(solve, mesh, error=1e-2 * transform.scale)
+    excess = history.errors["solution"] / (1e-2 * transform.scale)
+    if history.converged:
+        assert 0.5 < excess[-1] < 1.1
+    else:
+        assert "fallen between" in history.reason or "adapted 20 times" in history.reason
+
+
+def test_a_smooth_field_still_has_the_coarsest_mesh(start):
+    history = am.adapt_loop(lambda m: m.points[:, 0] ** 2, start, error=1.0)
+    assert history.converged and history.errors["solution"][-1] < 0.1
+
+
 # Resuming with other options
 
 
