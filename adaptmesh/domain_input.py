@@ -26,7 +26,6 @@ Holes = ArrayLike | str | None
 """Points in the holes, "nesting", or None if they are to be found; see `Domain`."""
 
 LARGEST = 1e75  # coordinate: its fourth power is still a double
-SMALLEST = 1e-140  # coordinate but 0: products of two, and their rounding, are still exact
 FLAT = 1e-9
 """Heights that differ by at most this share of the extent are rounding: the points are plane."""
 OR_REPAIR = "or let adaptmesh.repair do it"
@@ -107,13 +106,6 @@ def _check_range(out: Floats, what: str) -> None:
         raise DomainError(
             f"{what} {bad[0]} is ({x:g}, {y:g}): areas and squares of coordinates beyond "
             f"{LARGEST:g} overflow; choose another unit of length"
-        )
-    bad = np.flatnonzero(((np.abs(out) < SMALLEST) & (out != 0)).any(axis=1))
-    if len(bad):
-        x, y = out[bad[0]]
-        raise DomainError(
-            f"{what} {bad[0]} is ({x:g}, {y:g}): products of coordinates nearer to 0 than "
-            f"{SMALLEST:g} underflow; write 0 for what is rounding, or choose another unit"
         )
 
 
