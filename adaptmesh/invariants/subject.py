@@ -46,8 +46,14 @@ class Subject:
 
     @cached_property
     def exponent(self) -> int:
-        """The coordinates are less than two to this power."""
-        return int(np.frexp(np.abs(self.mesh.points).max())[1])
+        """The coordinates are less than two to this power; at most 0 if some are subnormal.
+
+        Dividing those by a power of two would round them, and change signs of areas.
+        """
+        p = self.mesh.points
+        exponent = int(np.frexp(np.abs(p).max())[1])
+        is_exact = bool((np.ldexp(np.ldexp(p, -exponent), exponent) == p).all())
+        return exponent if is_exact else min(exponent, 0)
 
     def scale(self, points: Floats) -> Floats:
         """Points times the power of two that brings those of the mesh to about one.

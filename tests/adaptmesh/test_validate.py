@@ -441,3 +441,14 @@ def test_verdict_on_overlap_agrees_with_areas(points, faces):
     elif not validity.ok:  # nothing overlaps, but a point hangs, is double, or has no triangle
         names = ("simple border", "distinct points", "points used")
         assert any(validity[name].ok is False for name in names)
+
+
+@pytest.mark.parametrize("size", [1.0, 700.0, 1e6])
+@pytest.mark.parametrize("tiny", [5e-324, 2e-323, -1e-310, 1e-300])
+def test_coordinates_of_any_size_are_judged_exactly(size, tiny):
+    """A slit as wide as the smallest numbers; nothing is rounded away before signs are taken."""
+    ring = np.array([(0, 0), (1, 1.8), (0, 2.8), (-1.4, 1.4), (0, 0), (0.5, -1.2)]) * size
+    ring[4] = tiny, -tiny
+    mesh = am.generate(am.Domain.polygon(ring), 0.4 * size)
+    validity = am.validate(mesh)
+    assert validity, str(validity)
