@@ -231,7 +231,7 @@ class History(Value, Sequence[Iteration]):
         """
         from .history_files import save
 
-        save(self, Path(folder))
+        save(self, Path(folder).absolute())
 
     @classmethod
     def load(cls, folder: PathLike, domain: Domain | None = None) -> History:
@@ -252,7 +252,7 @@ class History(Value, Sequence[Iteration]):
         """
         from .history_files import load
 
-        return load(Path(folder), domain)
+        return load(Path(folder).absolute(), domain)
 
     def plot(self, path: PathLike | None = None) -> Figure:
         """Draw estimates of error against the number of vertices, and both by iteration.

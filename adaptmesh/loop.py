@@ -18,7 +18,7 @@ from metrics import Background, Limits, nodal_lengths
 from . import history_files as files
 from .adapt import adapt
 from .domain import Domain
-from .errors import BudgetError, LoopError, LoopInterrupted
+from .errors import BudgetError, LoopError, LoopInterrupted, MetricError
 from .expected import expect_function
 from .history import History, Iteration, PathLike, Seconds, Snapshot
 from .mesh import Mesh
@@ -121,7 +121,9 @@ def adapt_loop(
         iteration, and gives what it would have given without interruption, bit for bit, if it is
         called with the same arguments. With another target, norm, choice of fields or limits it
         goes on from the last mesh: what was found for the earlier ones does not count as
-        convergence, nor as iterations.
+        convergence, nor as iterations. If the last solution does not have what these options ask
+        for, such as a field that only the new `solve` returns, `solve` is called again on the last
+        mesh, with ``previous=None``.
     keep_last : int, optional
         Keep only so many of the last meshes in memory, and read the others from `save` if they are
         asked for.
@@ -166,7 +168,7 @@ def adapt_loop(
         check_reachable(target_vertices, mesh, h_max)
     rule = StoppingRule(tolerance, max_iterations, budget)
     work = Work(Solver(solve), mesh, steering, transfer)
-    keeping = Keeping(None if save is None else Path(save), keep_last)
+    keeping = Keeping(None if save is None else Path(save).absolute(), keep_last)
     history = keeping.begun(_resumed(resume, mesh, steering, rule), resume)
     started = time.monotonic()
     while True:
@@ -247,7 +249,10 @@ class Work:
             )
 
     def next(self, history: History, clock: Clock) -> Iteration:
-        """A mesh for the last metric, the solution on it, and the metric for the next."""
+        """A mesh for the last metric, the solution on it, and the metric for the next.
+
+        The first solution for these options starts without a previous one.
+        """
         mesh, previous, unit = self.mesh, None, np.nan
         if history:
             last = history[-1].snapshot
@@ -255,7 +260,7 @@ class Work:
                 field = Background.on(last.mesh, last.metric)
                 mesh = adapt(last.mesh, field, max_vertices=self.steering.max_vertices)
                 unit = _unit_fraction(mesh, field)
-            if self.solve.takes_previous:
+            if self.solve.takes_previous and history.for_options:
                 with clock.of("transfer"):
                     previous = self._carried(last.solved, last.mesh, mesh)
         with clock.of("solve"):
@@ -362,7 +367,7 @@ def _resumed(
     if earlier:
         refuse_other_mesh(earlier[0].mesh, mesh)
     going_on = replace(earlier, reason="", converged=False, options=options)
-    if earlier and any(
+    if earlier.for_options and any(
         earlier.options.get(name) != options.get(name) for name in steering.asked_for
     ):
         return _with_last_estimated_again(going_on, steering)
@@ -372,17 +377,20 @@ def _resumed(
 def _with_last_estimated_again(history: History, steering: Steering) -> History:
     """The history with the metric and the errors of its last mesh by other options.
 
-    Nothing of what was found for the earlier options counts as convergence.
+    Nothing of what was found for the earlier options counts as convergence. Where the last solution
+    does not do for these options, its iteration is left out, so that it is made again: the mesh
+    is the same then, bit for bit.
     """
-    last = history[-1]
+    *before, last = history.iterations
     snapshot = last.snapshot
-    metric, errors = steering.metric(snapshot.mesh, snapshot.solved)
-    again = replace(last, errors=FrozenMapping(errors), kept=replace(snapshot, metric=metric))
-    return replace(
-        history,
-        iterations=(*history.iterations[:-1], again),
-        options_since=len(history) - 1,
-    )
+    try:
+        metric, errors = steering.metric(snapshot.mesh, snapshot.solved)
+    except MetricError:
+        again = []
+    else:
+        kept = replace(snapshot, metric=metric)
+        again = [replace(last, errors=FrozenMapping(errors), kept=kept)]
+    return replace(history, iterations=(*before, *again), options_since=len(before))
 
 
 def refuse_other_mesh(first: Mesh, mesh: Mesh) -> None:

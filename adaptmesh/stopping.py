@@ -68,7 +68,7 @@ class StoppingRule:
 
     def ended(self, history: History, steering: Steering, elapsed: float) -> History | None:
         """The history with its end, or None if there is to be another iteration."""
-        if not history:
+        if not history.for_options:
             return None
         if self._nothing_to_reduce(history, steering):
             return history.ended(

@@ -354,7 +354,7 @@ def _begun(
     """The folder to save to; it has what there is to go on with, and nobody else's history."""
     if save is None:
         return None
-    folder = Path(save)
+    folder = Path(save).absolute()
     is_there = isinstance(resume, (str, Path)) and Path(resume).resolve() == folder.resolve()
     if not is_there:
         refuse_history(folder, files.LIST)

@@ -121,6 +121,25 @@ def test_saved_and_loaded_is_the_same(whole, start, tmp_path):
     assert_same(am.History.load(folder), whole)
 
 
+def test_a_relative_folder_stays_where_it_was(whole, start, tmp_path, monkeypatch):
+    """Meshes are read when they are asked for, from another working directory too."""
+    monkeypatch.chdir(tmp_path)
+    whole.save("run")
+    loaded = am.History.load("run")
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    assert_same(loaded, whole)
+
+    def wanders(mesh, previous):
+        monkeypatch.chdir(tmp_path if len(mesh.points) % 2 else elsewhere)
+        return solve(mesh, previous)
+
+    saved = am.adapt_loop(wanders, start, save="own", keep_last=1, **OPTIONS)
+    assert_same(saved, whole)
+    assert_same(am.History.load(elsewhere / "own"), whole)
+
+
 def test_a_history_is_not_written_over(start, whole, tmp_path):
     whole.save(tmp_path)
     with pytest.raises(am.FormatError, match="there is a history in this folder"):

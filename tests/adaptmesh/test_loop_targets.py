@@ -252,6 +252,46 @@ def test_another_target_is_saved_and_gone_on_with_from_disk(start, tmp_path):
     assert am.History.load(run).options_since == whole.options_since
 
 
+def other_fields(mesh, previous):
+    """A solver that has learned another field since the history was saved."""
+    assert previous is None or set(previous) == {"u", "v"}
+    return {"u": wavy(mesh), "v": mesh.points[:, 1] ** 2}
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"target_vertices": 400, "fields": ["v"]},
+        {"error": {"u": 5e-3, "v": 5e-3}},
+        {"error": {"v": 5e-3}, "fields": ["v"]},
+    ],
+    ids=str,
+)
+@pytest.mark.parametrize("iterations", [0, 3])
+def test_what_only_the_new_solver_returns_is_solved_for_again(start, options, iterations, tmp_path):
+    def old(mesh):
+        return {"u": wavy(mesh)}
+
+    run = tmp_path / "run"
+    done = am.adapt_loop(old, start, target_vertices=300, max_iterations=iterations, save=run)
+    more = am.adapt_loop(other_fields, start, resume=run, save=run, max_iterations=2, **options)
+    assert more.options_since == iterations and len(more) == iterations + 3
+    assert np.array_equal(more[iterations].mesh.points, done.mesh.points)
+    straight = am.adapt_loop(other_fields, done.mesh, max_iterations=2, **options)
+    assert [it.errors for it in more.for_options] == [it.errors for it in straight]
+    assert np.array_equal(am.History.load(run).mesh.points, straight.mesh.points)
+
+
+def test_a_name_that_no_solver_returns_is_refused(start, done):
+    with pytest.raises(am.LoopError, match=r"there is no field 'w' to steer by") as caught:
+        am.adapt_loop(other_fields, start, resume=done, target_vertices=400, fields=["w"])
+    assert caught.value.history.iterations == done.iterations[:-1]
+    options = {"target_vertices": 400, "fields": ["v"], "max_iterations": 0}
+    more = am.adapt_loop(other_fields, start, resume=caught.value.history, **options)
+    assert len(more) == len(done)  # nothing is lost by the attempt
+    assert np.array_equal(more.mesh.points, done.mesh.points)
+
+
 def advance(mesh, u, t0, t1):
     return np.tanh(20 * (mesh.points[:, 0] - t1))
 
