@@ -137,8 +137,8 @@ def generate(
             raise typer.BadParameter("--tolerance is that of --repair")
         if straight_tolerance is not None and (repair or is_outline(domain)):
             raise typer.BadParameter("--straight-tolerance is for the border of a mesh")
-        if no_holes and (repair or not is_outline(domain)):
-            raise typer.BadParameter("--no-holes is for drawings and scripts, without --repair")
+        if no_holes and not is_outline(domain):
+            raise typer.BadParameter("--no-holes is for drawings and scripts")
         request = Request(size, metric, metric_field)
         request.refuse_empty()
         if repair or is_outline(domain):
@@ -239,6 +239,7 @@ def repair(
     domain: OutlineFile,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE.geojson", dir_okay=False)],
     tolerance: Tolerance = None,
+    no_holes: NoHoles = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
@@ -252,7 +253,7 @@ def repair(
         if output.suffix.lower() not in GEOJSON_SUFFIXES:
             raise typer.BadParameter(f"--output ends in {' or '.join(GEOJSON_SUFFIXES)}")
         check_folder(output)
-        clean, repairs = am.repair(domain, tolerance)
+        clean, repairs = am.repair(domain, tolerance, holes=[] if no_holes else None)
         speaker.say(repairs)
         write_geojson(output, clean)
         speaker.say(f"wrote {output}: {len(clean.points):,} points")

@@ -51,13 +51,14 @@ def outline_and_mesh(
     """The domain in a file, and the mesh that it is the domain of, if the file holds one."""
     import adaptmesh as am
 
+    holes: list[tuple[float, float]] | None = [] if no_holes else None
     if repair:
-        domain, repairs = am.repair(path, tolerance)
+        domain, repairs = am.repair(path, tolerance, holes=holes)
         speaker.say(repairs)
         speaker.note(repairs=[vars(r) for r in repairs])
         return domain, None
     if is_outline(path):
-        return am.read_domain(path, holes=[] if no_holes else None), None
+        return am.read_domain(path, holes=holes), None
     mesh = am.read(path)
     return am.Domain.of_mesh(mesh, straight_tolerance=straight_tolerance), mesh
 
@@ -82,7 +83,7 @@ def fields_for(path: Path, read: Mesh, mesh: Mesh) -> dict[str, Any]:
     of_triangles = {k: v for k, v in fields.items() if k not in of_points}
     if mesh is not read:
         of_points = {k: v[mesh.kept] for k, v in of_points.items()}
-    return {**of_points, "triangle_fields": of_triangles}
+    return {"fields": of_points, "triangle_fields": of_triangles}
 
 
 def field_of(path: Path, name: str) -> Any:

@@ -65,7 +65,7 @@ def refuse_holes(holes: Holes, given: str) -> None:
     """Raise a `DomainError` if holes are given for a file that says itself what they are."""
     if holes is not None:
         raise DomainError(
-            f"holes={holes!r}: the file has {given}, which say what is inside; leave holes out"
+            f"holes={holes!r}: there are {given}, which say what is inside; leave holes out"
         )
 
 
@@ -90,11 +90,11 @@ def checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
         raise DomainError(f"{what}s must be an (n, 2) array, not one of shape {out.shape}")
     if len(out) < least:
         raise DomainError(f"{len(out)} {what}s: at least {least} are needed")
-    _check_range(out, what)
+    check_range(out, what)
     return read_only(out)
 
 
-def _check_range(out: Floats, what: str) -> None:
+def check_range(out: Floats, what: str) -> None:
     """Refuse coordinates of which no exact signs and no areas can be computed."""
     bad = np.flatnonzero(~np.isfinite(out).all(axis=1))
     if len(bad):
@@ -285,7 +285,9 @@ def rows_of_each(numbers: NDArray[np.integer]) -> dict[int, NDArray[np.intp]]:
 
 def is_level(heights: Floats, xy: Floats) -> bool:
     """Whether points lie in one plane z = constant, to `FLAT` of their extent."""
-    return bool(np.ptp(heights) <= FLAT * np.ptp(xy, axis=0).max())
+    half_width = heights.max() / 2 - heights.min() / 2  # halves, as differences may overflow
+    half_extent = (xy.max(axis=0) / 2 - xy.min(axis=0) / 2).max()
+    return bool(half_width <= FLAT * half_extent)
 
 
 @dataclass(frozen=True, eq=False)

@@ -52,7 +52,9 @@ def inner_points(area: Any) -> list[Floats]:
     import shapely
 
     parts = shapely.get_parts(area)
-    inner = shapely.point_on_surface(parts[~shapely.is_empty(parts)])
+    parts = parts[~shapely.is_empty(parts)]
+    with np.errstate(over="ignore"):  # dy/dx of a nearly upright line is infinite, rightly
+        inner = shapely.point_on_surface(parts)
     return list(shapely.get_coordinates(inner))
 
 

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from metrics.measure import mesh_edges
 
-from . import _core
-from .mesh_arrays import frozen_integers, frozen_reals, numbers, plane_points, rows
+from .mesh_arrays import frozen_integers, frozen_reals, numbers, plane_points, rows, triangle_areas
 from .value import FrozenMapping, Value
 
 if TYPE_CHECKING:
@@ -113,15 +112,7 @@ class Mesh(Value):
     @cached_property
     def areas(self) -> Floats:
         """Area of each triangle, (m,), negative if clockwise; accurate however thin it is."""
-        p = self.points[self.triangles]
-        u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-        first, second = u[:, 0] * v[:, 1], u[:, 1] * v[:, 0]
-        out: Floats = 0.5 * (first - second)
-        # Where the products cancel, what is left is mostly their rounding.
-        thin = np.abs(out) < np.abs(first) / 8 + np.abs(second) / 8  # no overflow
-        if thin.any():
-            out[thin] = _core.triangle_areas(p[thin].reshape(-1, 6))
-        return out
+        return triangle_areas(self.points[self.triangles])
 
     def background_mesh(self, metric: Any) -> Mesh:
         """Another mesh of the same domain, for this metric; see `Domain.background_mesh`."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .cleaned import with_edges_once
 from .curves import Curve
 from .domain import Domain
-from .domain_input import labelled
+from .domain_input import check_range, labelled
 from .errors import DomainError
 from .invariants import local
 from .invariants.subject import Finding, Subject, edge_keys
@@ -112,6 +112,7 @@ def _refuse_what_is_no_mesh(mesh: Mesh) -> None:
     """Refuse triangles and edges that are not what the rest takes them for."""
     subject = Subject(mesh)
     _refuse_if_found(subject, local.finite_points, local.indices_in_range)
+    check_range(mesh.points, "vertex")
     clockwise = np.flatnonzero(mesh.areas < 0)
     if len(clockwise):
         i = int(clockwise[0])

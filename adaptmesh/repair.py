@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from .arrangement import Repair, Repairs, used_tolerance
 from .coverage import repaired_domain_of_shapes
 from .domain import Domain
+from .domain_input import Holes, refuse_holes
 from .drawings import Drawing
 from .errors import DomainError
 from .io.located import located, only_our_errors
@@ -18,7 +21,9 @@ from .repair_segments import repaired_domain_of_segments
 __all__ = ["Repair", "Repairs", "repair"]
 
 
-def repair(dirty: Any, tolerance: float | None = None) -> tuple[Domain, Repairs]:
+def repair(
+    dirty: Any, tolerance: float | None = None, *, holes: Holes = None
+) -> tuple[Domain, Repairs]:
     """Make a clean domain of what may be dirty, and say what was done for it.
 
     Parameters
@@ -38,6 +43,9 @@ def repair(dirty: Any, tolerance: float | None = None) -> tuple[Domain, Repairs]
         the extent, about the rounding of text files and of earlier computations (of drawings,
         1e-6); borders that miss each other by more need more. Less than 4 units in the last place
         of the largest coordinate is taken as that.
+    holes : sequence of (x, y), or "nesting", optional
+        As in `Domain`, for drawings of lines, .geo scripts without surfaces, and an `Outline`
+        that does not say it: ``[]`` if there are no holes. All else says itself what is inside.
 
     Returns
     -------
@@ -85,21 +93,25 @@ def repair(dirty: Any, tolerance: float | None = None) -> tuple[Domain, Repairs]
     if isinstance(dirty, (str, os.PathLike)):
         from .domain_io import read_raw
 
-        raw = read_raw(dirty)
+        raw = read_raw(dirty, holes)
         with only_our_errors(dirty), located(dirty, DomainError):
-            return _repaired(raw, tolerance)
-    return _repaired(dirty, tolerance)
+            is_script = Path(dirty).suffix.lower() == ".geo"
+            return _repaired(raw, tolerance, None if is_script else holes)
+    return _repaired(dirty, tolerance, holes)
 
 
-def _repaired(dirty: Any, tolerance: float | None) -> tuple[Domain, Repairs]:
+def _repaired(dirty: Any, tolerance: float | None, holes: Holes) -> tuple[Domain, Repairs]:
     """As `repair`, without paths."""
     if isinstance(dirty, Drawing) and not dirty.is_straight:
-        dirty = dirty.domain()
+        dirty, holes = dirty.domain(holes), None
     if isinstance(dirty, Drawing):
-        outline = dirty.outline()
+        outline = replace(dirty.outline(), holes=holes)
         return repaired_domain_of_segments(
             outline, dirty.join_tolerance if tolerance is None else tolerance
         )
+    if isinstance(dirty, Outline) and dirty.holes is None:
+        dirty, holes = replace(dirty, holes=holes), None
+    refuse_holes(holes, "a mesh, a domain, polygons or points in holes")
     if isinstance(dirty, Domain):
         if dirty.curved.runs:
             return dirty, Repairs((), used_tolerance(dirty.points, tolerance))

@@ -215,8 +215,8 @@ def validate(mesh: Mesh, *, tolerance: float | None = None) -> Validity:
     - *points used*: every point belongs to a triangle.
     - *constrained are edges*: every constrained edge is the side of a triangle, and listed once.
     - *border is constrained*: sides with a single triangle are constrained edges.
-    - *tags*: no tag and no region is negative, unless the domain gives it that number. One without
-      a name is allowed: files carry bare numbers.
+    - *tags*: in a mesh with a domain, no tag and no region is negative, unless the domain gives it
+      that number. Bare numbers, without names, are allowed; in files they may be negative.
     - *names*: names are text, each for a number of its own, and none for 0, which has no name;
       unless the domain has them so. Files keep such names, but what they mean is ambiguous.
 

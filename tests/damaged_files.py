@@ -1,6 +1,7 @@
 """Read damaged files of every format, as many as you like: python tests/damaged_files.py 1000 .vtu
 
-Without suffixes, files of all. Prints what came of them, and all that may not be.
+``7000:9000`` in place of the number is a range of seeds. Without suffixes, files of all. Prints
+what came of them, and all that may not be.
 """
 
 import sys
@@ -16,18 +17,18 @@ from reference.whole_files import WHOLE
 from adaptmesh.geo import by_gmsh
 
 
-def main(n, suffixes):
+def main(seeds, suffixes):
     by_gmsh.is_installed = lambda: False  # it takes a process for each
     others = contents()
     for suffix in suffixes:
         for way in WHOLE[suffix]:
             with tempfile.TemporaryDirectory() as folder:
-                run(n, Whole(suffix, way, Path(folder)), others, f"{suffix} {way}")
+                run(seeds, Whole(suffix, way, Path(folder)), others, f"{suffix} {way}")
 
 
-def run(n, whole, others, label):
+def run(seeds, whole, others, label):
     outcomes, start, slowest = Counter(), time.process_time(), (0.0, 0)
-    for seed in range(n):
+    for seed in seeds:
         whole.damage(seed, others)
         began = time.process_time()
         try:
@@ -48,4 +49,4 @@ def run(n, whole, others, label):
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]), sys.argv[2:] or list(WHOLE))
+    main(range(*map(int, sys.argv[1].split(":"))), sys.argv[2:] or list(WHOLE))

@@ -25,7 +25,7 @@ NUMBERS = ("gmsh:physical", "medit:ref", "cell_tags", "gmsh:geometrical")
 _DIMENSIONS = {"triangle": 2, "line": 1}
 
 
-def to_meshio(mesh: Mesh, **fields: ArrayLike) -> meshio.Mesh:
+def to_meshio(mesh: Mesh, /, **fields: ArrayLike) -> meshio.Mesh:
     """The mesh as one of meshio, in the plane z = 0.
 
     Parameters

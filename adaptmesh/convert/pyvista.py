@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["from_pyvista", "to_pyvista"]
 
 
-def to_pyvista(mesh: Mesh, **fields: ArrayLike) -> pv.UnstructuredGrid:
+def to_pyvista(mesh: Mesh, /, **fields: ArrayLike) -> pv.UnstructuredGrid:
     """The mesh as an unstructured grid of pyvista, in the plane z = 0.
 
     Parameters

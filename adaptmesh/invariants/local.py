@@ -138,12 +138,13 @@ def border_is_constrained(s: Subject) -> Finding:
 def tags(s: Subject) -> Finding:
     """No number is negative that the domain does not give.
 
-    One without a name is allowed: files carry bare numbers.
+    One without a name is allowed: files carry bare numbers. Those of FreeFEM and Medit may be
+    negative, so that without a domain all are.
     """
     mesh = s.mesh
     tagged = np.concatenate([mesh.edge_tags, mesh.regions])
     k = len(mesh.edge_tags)
-    bad = tagged < 0
+    bad = (tagged < 0) & (mesh.domain is not None)
     if mesh.domain is not None:
         known = (mesh.domain.segment_tags, mesh.domain.seed_regions)
         bad[:k] &= ~np.isin(mesh.edge_tags, known[0])

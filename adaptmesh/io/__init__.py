@@ -34,7 +34,7 @@ from .content import Array, fields_of, mesh_of
 from .files import read_bytes, replace_files
 from .formats import FORMATS, Format, format_of
 from .located import located, only_our_errors
-from .outgoing import outgoing, solution_values
+from .outgoing import all_fields, outgoing, solution_values
 from .outlines import outline_of
 from .periodic_sides import periodic_rows
 from .second_order import with_corners_only
@@ -90,7 +90,7 @@ def read_mesh_or_outline(path: PathLike) -> Mesh | Outline:
 def read_fields(path: PathLike) -> dict[str, Array]:
     """Read the fields that are in a mesh file, or for Medit in the solutions beside it.
 
-    ``write(copy, read(path), **read_fields(path))`` copies a file.
+    ``write(copy, read(path), fields=read_fields(path))`` copies a file.
 
     Parameters
     ----------
@@ -121,10 +121,11 @@ def write(
     /,
     *,
     metric: Metric | ArrayLike | None = None,
+    fields: Mapping[str, ArrayLike] | None = None,
     triangle_fields: Mapping[str, ArrayLike] | None = None,
     version: str | None = None,
     binary: bool | None = None,
-    **fields: ArrayLike,
+    **named: ArrayLike,
 ) -> None:
     """Write a mesh with its fields; the file is replaced whole, or on any error left as it was.
 
@@ -137,13 +138,16 @@ def write(
     metric : array, size, callable or ControlSpace, optional
         At the points: packed (n, 3), tensors (n, 2, 2) or sizes (n,); or what can be evaluated
         there. `read_fields` gives it back packed. In Medit it is ``name.sol`` beside ``name.mesh``.
+    fields : mapping of str to array, optional
+        Fields by name, as `named`: for names that are no words (``"wind speed"``), those of
+        options (``fields={"version": v}``), and all of a file; ``"metric"`` is the metric.
     triangle_fields : mapping of str to array, optional
         Fields of the triangles, (m,), (m, 2) or (m, 3).
     version : {"4.1", "2.2"}, optional
         Version of ``.msh``; 4.1 if not given.
     binary : bool, optional
         Whether ``.msh`` or ``.vtk`` is binary (if not given) or text.
-    **fields : array
+    **named : array
         Fields of the points, (n,), (n, 2) or (n, 3); an array with as many rows as there are
         triangles (and not points) is a field of the triangles. Integers stay integers in
         ``.vtu`` and become reals elsewhere. NaN is written as it is.
@@ -163,7 +167,8 @@ def write(
     for key in given.keys() - target.options:
         raise FormatError(f"{path}: {path.suffix} has no option {key!r}")
     with located(path):
-        content = outgoing(mesh, metric, fields, triangle_fields or {})
+        of_either, metric = all_fields(fields, named, metric)
+        content = outgoing(mesh, metric, of_either, triangle_fields or {})
         if target.required:
             content.required_points, content.required_edges = required_items(mesh)
         _warn_of_what_is_lost(path, mesh, target)

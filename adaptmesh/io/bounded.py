@@ -79,6 +79,15 @@ def whole_number(text: str | bytes, what: str = "a count") -> int:
     return int(digits)
 
 
+def signed_number(text: str, what: str = "a whole number") -> int:
+    """The whole number that a text is, with or without a sign."""
+    sign, digits = (text[:1], text[1:]) if text[:1] in ("-", "+") else ("", text)
+    if not digits[:1].isdigit():
+        raise FormatError(f"{what} was expected, found {_shown(text)}")
+    number = whole_number(digits, what)
+    return -number if sign == "-" else number
+
+
 def _shown(text: str | bytes) -> str:
     return repr(text) if len(text) <= 24 else f"{text[:24]!r}..."
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..cleaned import edges_once
-from ..domain_input import is_level
+from ..domain_input import LARGEST, is_level
 from ..errors import FormatError
 from ..mesh import Mesh
 from .periodic_sides import Rows, periodic_sides
@@ -139,17 +139,23 @@ def _check_numbers(what: str, numbers: Array, count: int) -> None:
         )
 
 
-def check_finite(points: Array) -> None:
-    """Raise for the first point with a coordinate that is infinite or not a number."""
+def check_coordinates(points: Array) -> None:
+    """Raise for the first point with a coordinate that is no number, infinite, or too large."""
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
         raise FormatError(f"point {bad[0]} is {tuple(points[bad[0]].tolist())}, not finite")
+    bad = np.flatnonzero((np.abs(points) > LARGEST).any(axis=1))
+    if len(bad):
+        raise FormatError(
+            f"point {bad[0]} is {tuple(points[bad[0]].tolist())}: areas and squares of coordinates "
+            f"beyond {LARGEST:g} overflow; choose another unit of length"
+        )
 
 
 def planar(points: Array) -> Array:
     """Points without a z that is everywhere the same; a `FormatError` names one that is off."""
     points = np.asarray(points, dtype=np.float64)
-    check_finite(points)
+    check_coordinates(points)
     if points.shape[1] == 3:
         z = points[:, 2]
         if len(z) and not is_level(z, points[:, :2]):

@@ -14,6 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..errors import FormatError
+from .bounded import whole_number
 from .content import Array, Content
 from .gmsh import NODES_OF_TYPE, Elements, Sections, refuse_element_types, section
 from .records import BinaryCursor, Cursor, TextCursor, one, table
@@ -44,10 +45,8 @@ def _count(cursor: Cursor) -> int:
     """The count is a line of text in binary files too."""
     if isinstance(cursor, BinaryCursor):
         line, _, _ = cursor.data[cursor.at : cursor.at + 32].partition(b"\n")
-        if not line.strip().isdigit():
-            raise FormatError(f"a count was expected, found {line!r}")
         cursor.at += len(line) + 1
-        return int(line)
+        return whole_number(line)
     return one(cursor)
 
 

@@ -24,6 +24,7 @@ import numpy as np
 
 from ..errors import FormatError
 from ..faces import seeds_of
+from .bounded import whole_number
 from .content import Array, Content, check_vertices, refuse_cells
 from .files import text_of
 from .located import located
@@ -49,15 +50,15 @@ def decode(data: bytes) -> Content:
             elif keyword == "NDIMS" and head != "2":
                 raise FormatError(f"{head} dimensions; only plane meshes can be read")
             elif keyword == "POINT":
-                points = _numbers(rows, _count(head), 3, "f8")[:, :2]
+                points = _numbers(rows, whole_number(head), 3, "f8")[:, :2]
             elif keyword in _CELLS:
-                cells[keyword] = _numbers(rows, _count(head), _CELLS[keyword], "i8")
+                cells[keyword] = _numbers(rows, whole_number(head), _CELLS[keyword], "i8")
             elif keyword in _OTHER_CELLS:
-                refuse_cells({_OTHER_CELLS[keyword]: _count(head)})
+                refuse_cells({_OTHER_CELLS[keyword]: whole_number(head)})
             elif keyword == "BOUND":
-                bounds = _numbers(rows, _count(head), 3, "i8")
+                bounds = _numbers(rows, whole_number(head), 3, "i8")
             elif keyword == "VALUE":
-                count, width = (_count(word) for word in (head + ";1").split(";")[:2])
+                count, width = (whole_number(word) for word in (head + ";1").split(";")[:2])
                 values = _numbers(rows, count, width, "f8")
     edges, triangles = cells["EDGE2"], cells["TRIA3"]
     content = Content(points, triangles[:, :3], triangles[:, 3], edges[:, :2], edges[:, 2])
@@ -106,12 +107,6 @@ def _tables(text: str) -> Iterator[tuple[str, str, list[str]]]:
             rows.append(words)
     if head:
         yield *head, rows
-
-
-def _count(word: str) -> int:
-    if not re.fullmatch(r"\s*[0-9]{1,18}\s*", word):
-        raise FormatError(f"a count was expected, found {word[:24]!r}")
-    return int(word)
 
 
 def _numbers(rows: list[str], count: int, width: int, code: str) -> Array:

@@ -12,10 +12,34 @@ from metrics.control import ControlSpace, Metric, as_control_space
 
 from ..errors import FormatError
 from ..mesh import Mesh
-from .content import Array, Content, check_finite, check_vertices
+from .content import Array, Content, check_coordinates, check_vertices
 from .periodic_sides import periodic_rows
 
 _RESERVED = ("metric", "regions", "edge_tags")
+
+
+def all_fields(
+    fields: Mapping[str, ArrayLike] | None,
+    named: Mapping[str, ArrayLike],
+    metric: Metric | ArrayLike | None,
+) -> tuple[dict[str, ArrayLike], Metric | ArrayLike | None]:
+    """Fields from a mapping and from keywords, and the metric, which may be in the mapping, too.
+
+    Nothing may be given twice.
+    """
+    if fields is None:
+        return dict(named), metric
+    if not isinstance(fields, Mapping):
+        raise FormatError(
+            f"fields: expected a mapping of names to arrays, got {type(fields).__name__}; a field "
+            "of that name is fields={'fields': ...}"
+        )
+    keywords = named if metric is None else {**named, "metric": metric}
+    twice = [name for name in fields if name in keywords]
+    if twice:
+        raise FormatError(f"{twice[0]!r} is given twice: in fields and as a keyword")
+    out = {**fields, **named}
+    return out, out.pop("metric", metric)
 
 
 def outgoing(
@@ -30,7 +54,7 @@ def outgoing(
     n, m = len(mesh.points), len(mesh.triangles)
     if not m:
         raise FormatError("the mesh has no triangles; there is nothing to write")
-    check_finite(mesh.points)
+    check_coordinates(mesh.points)
     check_vertices("triangle", mesh.triangles, n)
     check_vertices("edge", mesh.edges, n)
     content = Content(
@@ -96,6 +120,8 @@ def _field(name: str, values: ArrayLike) -> Array:
     """A field as float64 or as integers of at most 64 bits, (n,) or (n, ...)."""
     if name in _RESERVED:
         raise FormatError(f"{name!r} is the name of what the file holds anyway; rename the field")
+    if not isinstance(name, str):
+        raise FormatError(f"{name!r} cannot be the name of a field: it is no text")
     if not name or not name.isprintable() or set(name) & set('"$&<>') or name != name.strip():
         raise FormatError(
             f'{name!r} cannot be the name of a field; leave out " $ & < > and blanks at its ends'

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import FormatError
-from .bounded import read_json
+from .bounded import read_json, signed_number
 from .content import Array
 from .files import read_text
 from .located import located
@@ -142,8 +142,8 @@ class Table:
         """Names and numbers in comments of ours of that kind."""
         found = [words for words in self._comments if len(words) == 3 and words[0] == kind]
         try:
-            return [(str(read_json(name)), int(number)) for _, number, name in found]
-        except (FormatError, ValueError):
+            return [(str(read_json(name)), signed_number(number)) for _, number, name in found]
+        except FormatError:
             raise FormatError(f"{self.path}: a comment on {kind} has no number and name") from None
 
 
@@ -171,10 +171,10 @@ def read_points(table: Table) -> Points:
             f"the points have {dimension} coordinates and {markers} markers, not 2, and 0 or 1"
         )
     rows = table.rows("point", count, 3 + attributes + markers, finite=3)
-    first = int(rows[0, 0]) if count else 0
+    first = 1 if count and rows[0, 0] == 1 else 0
     bad = np.flatnonzero(rows[:, 0] != first + np.arange(count))
-    if first not in (0, 1) or len(bad):
-        row = int(bad[0]) if len(bad) else 0
+    if len(bad):
+        row = int(bad[0])
         raise table.error(
             f"the points are not numbered 0, 1, 2, ... or 1, 2, 3, ...: {rows[row, 0]:g}",
             row - count,

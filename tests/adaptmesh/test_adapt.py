@@ -184,3 +184,19 @@ def test_what_is_no_mesh_is_named(plate):
 def test_arrays_that_would_change_in_a_mesh_are_refused(arguments, message):
     with pytest.raises(ValueError, match=re.escape(message)):
         am.Mesh(**{**TWO, **arguments})
+
+
+@pytest.mark.parametrize("size", [1e76, 1e154, 1e200, 1.7e308])
+def test_meshes_whose_areas_overflow(size):
+    """They can be made and validated, and have no domain; nothing overflows on the way."""
+    mesh = am.Mesh(**{**TWO, "points": size * np.array(TWO["points"], float)})
+    exact = am.Mesh(**TWO).areas
+    np.testing.assert_allclose(mesh.areas, exact * size * size if size < 1e155 else np.inf)
+    for use in (am.Domain.of_mesh, lambda m: am.adapt(m, size), lambda m: am.adapt(m, 1.0)):
+        with pytest.raises(am.DomainError, match=r"vertex .* overflow; choose another unit"):
+            use(mesh)
+
+
+def test_thin_triangles_with_coordinates_whose_products_overflow():
+    mesh = am.Mesh([(0, 0), (1e200, 0), (1e200, 1e-200), (2e-200, 1e200)], [(0, 1, 2), (0, 2, 3)])
+    np.testing.assert_allclose(mesh.areas, [0.5, np.inf])

@@ -122,8 +122,11 @@ def test_holes_of_a_drawing_are_none_on_request(run):
     )
     arguments = ("generate", "a.svg", "-s", "0.5", "-o", "out.vtu")
     for more, area in (((), 8), (("--no-holes",), 9)):
-        done(run(*arguments, *more))
-        assert am.read("out.vtu").areas.sum() == pytest.approx(area)
+        for repair in ((), ("--repair",)):
+            done(run(*arguments, *more, *repair))
+            assert am.read("out.vtu").areas.sum() == pytest.approx(area)
+        done(run("repair", "a.svg", "-o", "out.geojson", *more))
+        assert am.read_domain("out.geojson").area == pytest.approx(area)
 
 
 JUMP = "0.4 - 0.37*(x > 2)"

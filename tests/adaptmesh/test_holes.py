@@ -245,8 +245,8 @@ def test_files_of_lines_say_what_domain_says_of_their_holes(write, transform, tm
     write(path, transform(points).tolist(), segments)
     place = transform((1.5, 1.5)) * (1, -1 if write is write_svg else 1)  # y is turned over
     for holes, area in ((None, 8), ("nesting", 8), ([place], 8), ([], 9)):
-        found = am.read_domain(path, holes=holes).area
-        assert found == pytest.approx(area * abs(transform.determinant), rel=1e-9)
+        for found in (am.read_domain(path, holes=holes), am.repair(path, holes=holes)[0]):
+            assert found.area == pytest.approx(area * abs(transform.determinant), rel=1e-9)
 
 
 def test_holes_of_files_that_say_what_is_inside(tmp_path):
@@ -258,8 +258,20 @@ def test_holes_of_files_that_say_what_is_inside(tmp_path):
     )
     for name in ("a.vtu", "a.wkt", "a.geo"):
         assert am.read_domain(tmp_path / name).area > 0
-        with pytest.raises(am.DomainError, match=r"holes=\[\]: the file has .* leave holes out"):
-            am.read_domain(tmp_path / name, holes=[])
+        for read in (am.read_domain, am.repair):
+            with pytest.raises(am.DomainError, match=r"holes=\[\]: there are .* leave holes out"):
+                read(tmp_path / name, holes=[])
+
+
+def test_repair_takes_holes_of_what_does_not_say_them():
+    outline = am.Outline(*closed(OUTER, INNER))
+    for holes, area in ((None, 8), ([], 9), ([(1.5, 1.5)], 8)):
+        assert am.repair(outline, holes=holes)[0].area == pytest.approx(area)
+    given = am.Outline(*closed(OUTER, INNER), holes=[])
+    for dirty in (given, given.domain(), OUTER):
+        assert am.repair(dirty)[0].area == 9
+        with pytest.raises(am.DomainError, match="leave holes out"):
+            am.repair(dirty, holes=[(1.5, 1.5)])
 
 
 def test_two_parts_between_holes_get_the_remedy():

@@ -108,8 +108,48 @@ def test_a_file_is_copied_by_reading_and_writing(way):
     io.write(path, mesh, metric=0.1, **some_fields(mesh), **options)
     copy = path.parent / "copy" / path.name  # .xdmf has the name of the file beside it inside
     copy.parent.mkdir()
-    io.write(copy, io.read(path), **io.read_fields(path), **options)
-    assert copy.read_bytes() == path.read_bytes()
+    for metric_and_fields in (io.read_fields(path), {"fields": io.read_fields(path)}):
+        io.write(copy, io.read(path), **metric_and_fields, **options)
+        assert copy.read_bytes() == path.read_bytes()
+
+
+def test_fields_may_have_the_names_of_options(way):
+    path, options = way
+    mesh = a_mesh()
+    u = np.arange(9.0)
+    names = ["version", "binary", "fields", "triangle_fields", "mesh", "path", "two words"]
+    fields = {name: u + k for k, name in enumerate(names)}
+    io.write(path, mesh, fields={**fields, "metric": 0.5}, v=u, **options)
+    back = io.read_fields(path)
+    assert back.keys() == {*fields, "v", "metric"}
+    for name, values in fields.items():
+        np.testing.assert_array_equal(back[name], values, err_msg=name)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"fields": {"u": np.zeros(9)}, "u": np.ones(9)}, "'u' is given twice"),
+        ({"fields": {"metric": 0.1}, "metric": 0.2}, "'metric' is given twice"),
+        ({"fields": np.zeros(9)}, "expected a mapping of names to arrays, got ndarray"),
+        ({"fields": {"u": np.zeros(9)}, "triangle_fields": {"u": np.zeros(8)}}, "two fields"),
+        ({"fields": {3: np.zeros(9)}}, "3 cannot be the name of a field"),
+    ],
+)
+def test_fields_given_wrongly(tmp_path, given, message):
+    with pytest.raises(FormatError, match=message):
+        io.write(tmp_path / "a.vtu", a_mesh(), **given)
+
+
+@pytest.mark.parametrize("large", [1e76, -1e155, 1.7e308])
+def test_coordinates_whose_areas_overflow(way, large):
+    """They are neither written nor read: no mesh of them can be adapted."""
+    path, options = way
+    mesh = a_mesh()
+    points = mesh.points.copy()
+    points[8, 1] = large
+    with pytest.raises(FormatError, match=r"point 8 is .* overflow; choose another unit of length"):
+        io.write(path, Mesh(points, mesh.triangles), **options)
 
 
 AWKWARD = [

@@ -143,6 +143,7 @@ def test_negative_references(tmp_path):
     mesh = io.read(written(tmp_path, text))
     assert mesh.edge_tags.tolist() == [-7, 8]
     assert mesh.regions.tolist() == [-3, 4]
+    assert mesh.validate()["tags"].ok
     for suffix in (".mesh", ".meshb", ".vtu", ".vtk", ".xdmf", ".ele"):
         io.write(tmp_path / f"out{suffix}", mesh)
         again = io.read(tmp_path / f"out{suffix}")

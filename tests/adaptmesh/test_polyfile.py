@@ -130,3 +130,34 @@ def test_the_poly_of_a_mesh_has_its_holes_and_regions(tmp_path):
     for name, number in domain.region_names.items():
         area = mesh.areas[mesh.regions == number].sum()
         assert new.areas[new.regions == number].sum() == pytest.approx(area, rel=1e-12), name
+
+
+LARGE = ["1e308", "9" * 25, "-1e300", "2147483648", "1.5"]
+
+
+@pytest.mark.parametrize("number", LARGE)
+def test_numbers_of_points_that_are_none(number, tmp_path):
+    path = tmp_path / "a.poly"
+    rows = "{} 0 0\n{} 1 0\n2 0 1\n"
+    rest = "3 0\n0 0 1\n1 1 2\n2 2 0\n0\n"
+    path.write_text("3 2 0 0\n" + rows.format(number, 1) + rest)
+    with pytest.raises(am.FormatError, match=r"line 2: the points are not numbered"):
+        am.read_domain(path)
+    path.write_text("3 2 0 0\n" + rows.format(0, number) + rest)
+    with pytest.raises(am.FormatError, match=r"line 3: the points are not numbered"):
+        am.read_domain(path)
+    (tmp_path / "a.node").write_text("3 2 0 0\n" + rows.format(number, 1))
+    path.write_text("0 2 0 0\n" + rest)
+    with pytest.raises(am.FormatError, match=r"a\.node, line 2: the points are not numbered"):
+        am.read_domain(path)
+
+
+@pytest.mark.parametrize("number", ["9" * 25, "1" * 500, "1e3", "x", "--1", "+", "- 1"])
+def test_numbers_of_names_that_are_none(number, tmp_path):
+    path = tmp_path / "a.poly"
+    am.write(tmp_path / "a.ele", am.generate(am.Domain.rectangle(0, 0, 1, 1), 0.5))
+    whole = path.read_text()
+    assert "# edge_tags 3 " in whole
+    path.write_text(whole.replace("# edge_tags 3 ", f"# edge_tags {number} "))
+    with pytest.raises(am.FormatError, match="a comment on edge_tags has no number and name"):
+        am.read_domain(path)

@@ -161,6 +161,20 @@ def test_geo_of_impossible_numbers(file, expression, why):
     refused(am.read_domain, file("a.geo", f"a = {expression};"), why)
 
 
+@pytest.mark.parametrize("tiny", ["1e-310", "-1e-310", "5e-324", "1e-300", "0"])
+def test_geo_of_nearly_upright_lines(file, tiny):
+    """dy/dx overflows in the search for a point inside."""
+    text = (
+        f"Point(1) = {{{tiny}, 0, 0}}; Point(2) = {{2, 0, 0}}; Point(3) = {{2, 1, 0}};"
+        "Point(4) = {0, 1, 0}; Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4};"
+        "Line(4) = {4, 1}; Curve Loop(1) = {1:4}; Plane Surface(1) = {1};"
+        'Physical Surface("a") = {1};'
+    )
+    domain = am.read_domain(file("a.geo", text))
+    assert domain.area == pytest.approx(2)
+    assert list(domain.region_names) == ["a"]
+
+
 def test_geo_loops_of_some_size_are_read(file):
     text = """
     n = 500;

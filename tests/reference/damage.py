@@ -38,6 +38,7 @@ WORDS = [
     )
     for value in values
 ]
+EXTREMES = [1.7e308, 1e300, 1e200, 1e160, 1e150, 1e100, 1e76, 1e74, 1e60, 1e-60, 1e-160, 1e-310]
 _NUMBER = re.compile(rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 
@@ -97,6 +98,20 @@ def numbers_replaced(data, chance):
     return data
 
 
+def numbers_made_extreme(data, chance):
+    """Numbers whose squares or products overflow or underflow, in text; or one in binary."""
+    found = list(_NUMBER.finditer(data))
+    if data.count(b"\0") > len(data) // 20 or not found:
+        i = 8 * chance.randrange(len(data) // 8 + 1) + chance.choice([0, 0, len(data) % 8])
+        word = struct.pack("<d", chance.choice([1, -1]) * chance.choice(EXTREMES))
+        return data[:i] + word + data[i + 8 :]
+    few = chance.sample(found, min(len(found), chance.choice([1, 1, 2, 3, 8])))
+    for m in sorted(few, key=lambda m: -m.start()):
+        number = chance.choice([1, -1]) * chance.choice(EXTREMES)
+        data = data[: m.start()] + b"%r" % number + data[m.end() :]
+    return data
+
+
 def word_overwritten(data, chance):
     word = chance.choice(WORDS)
     i = chance.choice([1, 4, 8]) * chance.randrange(len(data) // 8 + 1)
@@ -109,7 +124,7 @@ def other_content(chance, others):
 
 KINDS = [
     cut, flipped, flipped, piece_lost_or_repeated, line_lost_repeated_or_moved, digits_changed,
-    numbers_replaced, numbers_replaced, word_overwritten, other_content,
+    numbers_replaced, numbers_replaced, numbers_made_extreme, word_overwritten, other_content,
 ]  # fmt: skip
 
 
