@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from .arrangement import Faces, Repair, Repairs, find_faces, node, used_tolerance
 from .arrangement.numbering import unique_edges, used_points
-from .arrangement.winding import net_passes, winding_numbers
+from .arrangement.winding import Passes, net_passes
 from .domain import Domain
 from .errors import DomainError
 from .ownership import owners_of_faces
@@ -87,12 +87,10 @@ def repaired_domain_of_shapes(
             f"no polygon is wider than the tolerance, {tolerance:.3g}: there is nothing to mesh"
         )
     faces = find_faces(points, edges)
-    ring = rings.ring[noded.segment]
-    owner = owners_of_faces(
-        faces, winding_numbers(faces, edge, sign, ring), shapes, rings.rings, log
-    )
+    passes = net_passes(edge, sign, rings.ring[noded.segment])
+    owner = owners_of_faces(faces, edges, passes, shapes, rings.rings, log)
     kept = owner[faces.left] != owner[faces.right]
-    _record_what_is_dropped(points, edges, kept, rings, net_passes(edge, sign, ring), log)
+    _record_what_is_dropped(points, edges, kept, rings, passes, log)
     if not kept.any():
         raise DomainError(f"there is nothing to mesh: {log[-1]}")
     domain = _domain(points, edges, kept, faces, owner, shapes)
@@ -104,7 +102,7 @@ def _record_what_is_dropped(
     edges: Ints,
     kept: NDArray[np.bool_],
     rings: Rings,
-    passes: tuple[Ints, Ints, Ints],
+    passes: Passes,
     log: list[Repair],
 ) -> None:
     """Name the rings of which nothing is left, and the spikes of the others."""

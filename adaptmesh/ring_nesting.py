@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arrangement import Repair, find_faces
-from .arrangement.winding import winding_numbers
+from .arrangement.winding import net_passes
 from .domain_input import OR_REPAIR, Floats
 from .errors import DomainError
 from .ownership import owners_of_faces
@@ -51,10 +51,9 @@ def refuse_rings_out_of_place(
     ring : (p,) array
         The ring of each piece.
     """
-    faces = find_faces(points, pieces.astype(np.int64))
-    signs = np.where(along, 1, -1)
-    windings = winding_numbers(faces, np.arange(len(pieces)), signs, ring)
+    edges = pieces.astype(np.int64)
+    passes = net_passes(np.arange(len(edges)), np.where(along, 1, -1), ring)
     log: list[Repair] = []
-    owners_of_faces(faces, windings, [shape], rings, log)
+    owners_of_faces(find_faces(points, edges), edges, passes, [shape], rings, log)
     if log:
         raise DomainError(f"{log[0]}: mend it, {OR_REPAIR}")

@@ -9,6 +9,9 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,35 +20,52 @@ from .faces import Faces
 Ints = NDArray[np.int64]
 
 
-def winding_numbers(faces: Faces, edge: Ints, sign: Ints, ring: Ints) -> list[dict[int, int]]:
-    """For each face the rings that wind around it, and how often.
+Passes = tuple[Ints, Ints, Ints]
+
+
+def winding_changes(faces: Faces, passes: Passes) -> Iterator[tuple[int, dict[int, int]]]:
+    """Visit all faces but the outside, each with the change of winding numbers since the last one.
+
+    Together the changes are no more than twice the passes, however deep rings are nested.
 
     Parameters
     ----------
     faces : Faces
-    edge, sign, ring : (p,) arrays
-        The edge of each piece of a ring, whether it runs along (1) or against it (-1), and the
-        ring.
+    passes : (edge, ring, net) arrays
+        As `net_passes` returns them.
+
+    Yields
+    ------
+    face : int
+    changes : dict of int to int
+        By ring. Before the first face all winding numbers are zero.
     """
-    edge, ring, net = net_passes(edge, sign, ring)
+    edge, ring, net = passes
     order, before, through = walk(faces)
-    numbers: list[dict[int, int]] = [{} for _ in range(faces.count)]
-    start = np.searchsorted(edge, through)
-    stop = np.searchsorted(edge, through, side="right")
-    forward = faces.left[through] == order
+    start = np.searchsorted(edge, through).tolist()
+    stop = np.searchsorted(edge, through, side="right").tolist()
+    into_left = np.where(faces.left[through] == order, 1, -1).tolist()
     rings, nets = ring.tolist(), net.tolist()
-    steps = (column.tolist() for column in (order, before, start, stop, forward))
-    for face, previous, i, j, into_left in zip(*steps, strict=True):
-        here = dict(numbers[previous])
-        for k in range(i, j):
-            number = here.pop(rings[k], 0) + (nets[k] if into_left else -nets[k])
-            if number:
-                here[rings[k]] = number
-        numbers[face] = here
-    return numbers
+    step_to = {face: k for k, face in enumerate(order.tolist())}
+    next_to: dict[int, list[int]] = defaultdict(list)
+    for face, previous in zip(order.tolist(), before.tolist(), strict=True):
+        next_to[previous].append(face)
+
+    changes: dict[int, int] = defaultdict(int)
+    todo = [(face, 1) for face in next_to[0]]
+    while todo:
+        face, way = todo.pop()  # into the face, or back out of it
+        k = step_to[face]
+        for i in range(start[k], stop[k]):
+            changes[rings[i]] += way * into_left[k] * nets[i]
+        if way == 1:
+            yield face, changes
+            changes = defaultdict(int)
+            todo.append((face, -1))
+            todo += [(beyond, 1) for beyond in next_to[face]]
 
 
-def net_passes(edge: Ints, sign: Ints, ring: Ints) -> tuple[Ints, Ints, Ints]:
+def net_passes(edge: Ints, sign: Ints, ring: Ints) -> Passes:
     """Edges, rings along them, and how often more along than against; sorted by edge."""
     order = np.lexsort((ring, edge))
     edge, ring, sign = edge[order], ring[order], sign[order]

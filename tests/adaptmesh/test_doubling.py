@@ -69,6 +69,19 @@ def of_holes(n):
     return work
 
 
+def of_nested_rings(n):
+    """Rings in rings: an outline, holes, islands in these, holes in the islands, ..."""
+    square = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    rings = [square * (1 - k / (n + 1)) for k in range(n)]
+
+    def work():
+        domain = am.Domain.polygon(rings[0], rings[1:])
+        repaired, _ = am.repair([rings])
+        assert domain.area == pytest.approx(repaired.area, rel=1e-12)
+
+    return work
+
+
 def of_names(n):
     domain = am.Domain.polygon(star(n))
     names = {f"side {i}": [i] for i in range(n)}
@@ -77,7 +90,14 @@ def of_names(n):
 
 @pytest.mark.parametrize(
     ("make", "n"),
-    [(of_lines, 500), (of_arcs, 250), (of_grains, 576), (of_holes, 400), (of_names, 1000)],
+    [
+        (of_lines, 500),
+        (of_arcs, 250),
+        (of_grains, 576),
+        (of_holes, 400),
+        (of_nested_rings, 300),
+        (of_names, 1000),
+    ],
 )
 def test_four_times_as_much_takes_about_four_times_as_long(make, n):
     small, large = seconds(make(n)), seconds(make(4 * n))
