@@ -9,9 +9,10 @@ except ImportError as error:
     ) from error
 
 from . import curves
-from .adapt import adapt
-from .domain import Domain
-from .domain_io import read_domain
+from .adapt.adapt import adapt
+from .domain.domain import Domain
+from .domain.naming import facing, nearest
+from .domain.outline import Outline
 from .errors import (
     AdaptmeshError,
     BudgetError,
@@ -25,28 +26,27 @@ from .errors import (
     TransientError,
     TransientInterrupted,
 )
-from .explain import Explanation, explain
-from .generate import generate
-from .history import History, Iteration
+from .generate.delaunay import delaunay
+from .generate.generate import generate
+from .generate.prediction import predict
 from .io import read, read_fields, read_sol, write, write_sol
-from .loop import adapt_loop
-from .mesh import Mesh
-from .naming import facing, nearest
-from .overlay import Overlay
-from .plot import plot
-from .prediction import predict
-from .raw import Outline
-from .reasons import Cause, Reason
-from .repair import Repair, Repairs, repair
-from .report import Report, measure
-from .simplify import Dropped, simplify
-from .solved import Solution
-from .stopping import Budget
-from .transfer import transfer
-from .transient import transient_loop
-from .transient_history import Interval, TransientHistory
-from .triangulate import delaunay
-from .validate import Validity, validate
+from .io.domains.read import read_domain
+from .loop.adapt_loop import adapt_loop
+from .loop.history import History, Iteration
+from .loop.solution import Solution
+from .loop.stopping import Budget
+from .loop.transient_history import Interval, TransientHistory
+from .loop.transient_loop import transient_loop
+from .mesh.mesh import Mesh
+from .mesh.validate.validate import Validity, validate
+from .quality.explain import Explanation, explain
+from .quality.reasons import Cause, Reason
+from .quality.report import Report, measure
+from .repair.repair import Repair, Repairs, repair
+from .repair.simplify import Dropped, simplify
+from .transfer.supermesh import Overlay
+from .transfer.transfer import transfer
+from .view import plot
 
 __version__ = "0.1.0"
 

@@ -1,6 +1,6 @@
 """``python -m adaptmesh``: the command line."""
 
-from .cli import main
+from adaptmesh.cli.commands import main
 
 if __name__ == "__main__":
     main()

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 from metrics.errors import AdaptmeshError, MetricError
 
 if TYPE_CHECKING:
-    from .history import History
-    from .transient_history import TransientHistory
+    from adaptmesh.loop.history import History
+    from adaptmesh.loop.transient_history import TransientHistory
 
 __all__ = [
     "AdaptmeshError",

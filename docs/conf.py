@@ -42,7 +42,7 @@ def write_command_reference() -> None:
     """The options of each command, from the command line itself."""
     target = Path(__file__).parent / "generated" / "cli.md"
     target.parent.mkdir(exist_ok=True)
-    command = [sys.executable, "-m", "typer", "adaptmesh.cli", "utils", "docs"]
+    command = [sys.executable, "-m", "typer", "adaptmesh.cli.commands", "utils", "docs"]
     text = subprocess.run([*command, "--name", "adaptmesh"], check=True, stdout=subprocess.PIPE)
     target.write_bytes(text.stdout)
 

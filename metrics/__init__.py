@@ -3,20 +3,22 @@
 from . import tensor
 from .background import Background
 from .control import ControlSpace, Metric, Uniform, as_control_space
-from .curvature import Curvature, interpolation_errors
 from .errors import AdaptmeshError, MetricError
-from .estimators import (
+from .expression import Expression
+from .files import read
+from .from_solution.estimators import (
     doerfler_marking,
     metric_from_indicators,
     residual_indicators,
     zz_indicators,
 )
-from .expression import Expression
-from .files import read
-from .goal import metric_from_adjoint
+from .from_solution.goal_oriented import metric_from_adjoint
+from .from_solution.hessian_field import Curvature, interpolation_errors
+from .from_solution.normalise import Limits, combined, interpolation_error, lp_metric, normalised
+from .from_solution.optimal_metric import metric_from_hessians, metric_from_solution
+from .from_solution.recovery import absolute, gradients, hessians
 from .gradation import graded
-from .implied import implied_metric, triangle_metrics
-from .measure import (
+from .measure.exact import (
     Complexity,
     complexity,
     edge_lengths,
@@ -24,7 +26,8 @@ from .measure import (
     metric_areas,
     qualities,
 )
-from .nodal import (
+from .measure.implied import implied_metric, triangle_metrics
+from .measure.nodal import (
     efficiency_index,
     h_shocks,
     nodal_areas,
@@ -33,8 +36,6 @@ from .nodal import (
     nodal_qualities,
     predicted_vertices,
 )
-from .normalise import Limits, combined, interpolation_error, lp_metric, normalised
-from .recovery import absolute, gradients, hessians
 from .sizes import (
     BoundaryCurvature,
     BoundaryLayer,
@@ -46,7 +47,6 @@ from .sizes import (
     Shock,
     first_height,
 )
-from .solution import metric_from_hessians, metric_from_solution
 
 __all__ = [
     "AdaptmeshError",

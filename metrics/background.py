@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core, tensor
-from .arrays import Floats, Ints, as_numbers, as_points, as_triangles
+from .checks import Floats, Ints, as_numbers, as_points, as_triangles
 from .control import ControlSpace
 from .errors import MetricError
 from .gradation import graded

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import tensor
-from .arrays import Floats, as_points
+from .checks import Floats, as_points
 from .errors import AdaptmeshError, MetricError
 
 __all__ = ["ControlSpace", "Metric", "Uniform", "as_control_space"]

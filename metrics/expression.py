@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arrays import Floats
+from .checks import Floats
 from .control import ControlSpace
 from .errors import MetricError
 

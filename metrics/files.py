@@ -15,8 +15,8 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from .arrays import Floats, Ints, as_points, as_triangles
 from .background import Background
+from .checks import Floats, Ints, as_points, as_triangles
 from .errors import AdaptmeshError, MetricError
 from .text import text_of
 

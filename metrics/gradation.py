@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core, tensor
-from .arrays import Floats, as_points, as_triangles
+from .checks import Floats, as_points, as_triangles
 from .errors import MetricError
 
 __all__ = ["LAWS", "graded"]

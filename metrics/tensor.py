@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .arrays import Floats, as_numbers
+from .checks import Floats, as_numbers
 from .errors import MetricError
 
 __all__ = [

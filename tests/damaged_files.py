@@ -14,7 +14,7 @@ from pathlib import Path
 from reference.damage import Whole, contents, little_memory, read_every_way
 from reference.whole_files import WHOLE
 
-from adaptmesh.geo import by_gmsh
+from adaptmesh.io.domains.geo import by_gmsh
 
 
 def main(seeds, suffixes):

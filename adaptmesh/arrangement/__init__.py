@@ -1,6 +1,7 @@
 """Segments made to meet only at their ends, the faces between them, and what was done for it."""
 
-from .distance import first_of_equal
+from adaptmesh.geometry.distance import first_of_equal
+
 from .faces import Faces, find_faces
 from .noding import Noded, Words, node, used_tolerance
 from .record import NOWHERE, Repair, Repairs, at

@@ -16,10 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _core
-from ..containing import containing_triangles
-from ..errors import DomainError
-from ..invariants.subject import edge_keys
+from adaptmesh import _core
+from adaptmesh.errors import DomainError
+from adaptmesh.geometry.containing import containing_triangles
+from adaptmesh.mesh.validate.subject import edge_keys
+
 from .record import at
 
 Floats = NDArray[np.float64]

@@ -26,9 +26,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _core
-from ..errors import DomainError
-from .distance import distance, meeting, near_points
+from adaptmesh import _core
+from adaptmesh.errors import DomainError
+from adaptmesh.geometry.distance import distance, meeting, near_points
+
 from .record import Repair, at
 
 Floats = NDArray[np.float64]

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import overload
 
-from ..value import Value
+from adaptmesh.value import Value
 
 SHOWN = 5
 """So many repairs of a kind are printed; `Repairs` holds all of them."""

@@ -17,10 +17,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import FormatError
-from ..invariants.subject import edge_keys
-from ..io.content import Content
-from ..mesh import Mesh
+from adaptmesh.errors import FormatError
+from adaptmesh.mesh.incoming import Content
+from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.mesh.validate.subject import edge_keys
+
 from .labels import incoming
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..mesh import Mesh
+from adaptmesh.mesh.mesh import Mesh
 
 Fields = dict[str, NDArray[Any]]
 

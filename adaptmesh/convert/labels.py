@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import FormatError
-from ..io.content import Content, mesh_of
-from ..io.located import located
-from ..mesh import Mesh
-from ..outline import with_interfaces
+from adaptmesh.errors import FormatError
+from adaptmesh.files.located import located
+from adaptmesh.mesh.incoming import Content, mesh_of
+from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.mesh.to_domain import with_interfaces
 
 Ints = NDArray[np.int32]
 

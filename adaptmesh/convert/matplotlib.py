@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..io.content import Content
-from ..mesh import Mesh
+from adaptmesh.mesh.incoming import Content
+from adaptmesh.mesh.mesh import Mesh
+
 from .labels import incoming
 
 if TYPE_CHECKING:

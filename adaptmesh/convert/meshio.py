@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import FormatError
-from ..io.content import Content, refuse_cells
-from ..io.located import located
-from ..mesh import Mesh
+from adaptmesh.errors import FormatError
+from adaptmesh.files.located import located
+from adaptmesh.mesh.incoming import Content, refuse_cells
+from adaptmesh.mesh.mesh import Mesh
+
 from .fields import split_fields
 from .labels import incoming, tags_of_sets
 

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import FormatError
-from ..io.content import Content
-from ..mesh import Mesh
-from ..outline import with_interfaces
+from adaptmesh.errors import FormatError
+from adaptmesh.mesh.incoming import Content
+from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.mesh.to_domain import with_interfaces
+
 from .labels import incoming, names_of_tags
 
 if TYPE_CHECKING:

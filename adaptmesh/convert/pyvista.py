@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from adaptmesh.errors import FormatError
+from adaptmesh.mesh.incoming import Content, refuse_cells
+from adaptmesh.mesh.mesh import Mesh
 from metrics import qualities
 
-from ..errors import FormatError
-from ..io.content import Content, refuse_cells
-from ..mesh import Mesh
 from .fields import split_fields
 from .labels import incoming
 

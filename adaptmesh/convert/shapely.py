@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from shapely import MultiPolygon, Polygon
 
-    from ..domain import Domain
+    from adaptmesh.domain.domain import Domain
 
 __all__ = ["to_shapely"]
 
@@ -30,7 +30,7 @@ def to_shapely(domain: Domain) -> dict[str | None, MultiPolygon]:
     """
     import shapely
 
-    from ..parts import regions_beside
+    from adaptmesh.domain.seeds import regions_beside
 
     n, pieces = len(domain.points), domain.pieces
     beside = regions_beside(domain.triangles, domain.triangle_regions, pieces, n)

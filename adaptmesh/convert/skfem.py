@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import FormatError
-from ..invariants.subject import edge_keys
-from ..io.content import Content
-from ..io.located import located
-from ..mesh import Mesh
+from adaptmesh.errors import FormatError
+from adaptmesh.files.located import located
+from adaptmesh.mesh.incoming import Content
+from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.mesh.validate.subject import edge_keys
+
 from .labels import incoming, members, tags_of_sets
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .. import domain_input
-from ..errors import DomainError
+from adaptmesh.domain import inputs as domain_input
+from adaptmesh.errors import DomainError
 
 Floats = NDArray[np.float64]
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import DomainError
+from adaptmesh.errors import DomainError
+
 from .checks import checked_point
 from .curve import Curve, Floats
 

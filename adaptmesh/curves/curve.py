@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import DomainError
-from ..value import Value
+from adaptmesh.errors import DomainError
+from adaptmesh.value import Value
 
 Floats = NDArray[np.float64]
 

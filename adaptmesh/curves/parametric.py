@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import DomainError
+from adaptmesh.errors import DomainError
+
 from .curve import Curve, Floats
 
 CLOSED = 1e-9

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import DomainError
+from adaptmesh.errors import DomainError
+
 from .checks import check_distinct, checked_points
 from .curve import Curve, Floats
 

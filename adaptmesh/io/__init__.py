@@ -23,21 +23,21 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from adaptmesh.domain.outline import Outline
+from adaptmesh.domain.seeds import seeds_in
+from adaptmesh.errors import FormatError, FormatWarning
+from adaptmesh.files.located import located, only_our_errors
+from adaptmesh.files.whole import read_bytes, replace_files
+from adaptmesh.io.meshes.outlines import outline_of
+from adaptmesh.io.meshes.required import required_items
+from adaptmesh.io.meshes.second_order import with_corners_only
+from adaptmesh.mesh.incoming import Array, fields_of, mesh_of
+from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.mesh.periodic_sides import periodic_rows
 from metrics.control import Metric
 
-from ..errors import FormatError, FormatWarning
-from ..mesh import Mesh
-from ..parts import seeds_in
-from ..raw import Outline
-from ..required import required_items
-from .content import Array, fields_of, mesh_of
-from .files import read_bytes, replace_files
 from .formats import FORMATS, Format, format_of
-from .located import located, only_our_errors
 from .outgoing import all_fields, outgoing, solution_values
-from .outlines import outline_of
-from .periodic_sides import periodic_rows
-from .second_order import with_corners_only
 
 __all__ = ["FORMATS", "Format", "read", "read_fields", "read_sol", "write", "write_sol"]
 
@@ -213,7 +213,7 @@ def read_sol(path: PathLike) -> NDArray[np.float64]:
     FormatError
         The file is missing or damaged.
     """
-    from .sol import decode
+    from adaptmesh.io.meshes.sol import decode
 
     path = Path(path)
     binary = _is_binary_sol(path)
@@ -238,7 +238,7 @@ def write_sol(path: PathLike, values: ArrayLike) -> None:
     FormatError
         An array of another shape, or the file cannot be written.
     """
-    from .sol import encode
+    from adaptmesh.io.meshes.sol import encode
 
     path = Path(path)
     binary = _is_binary_sol(path)

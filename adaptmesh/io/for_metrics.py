@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from .content import Array, fields_of, mesh_of
+from adaptmesh.files.located import located, only_our_errors
+from adaptmesh.mesh.incoming import Array, fields_of, mesh_of
+
 from .formats import format_of
-from .located import located, only_our_errors
 
 
 def read(path: Path) -> tuple[Array, Array, dict[str, Array]]:

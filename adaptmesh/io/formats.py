@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import FormatError
-from .content import Content
-from .files import read_bytes
-from .located import located
+from adaptmesh.errors import FormatError
+from adaptmesh.files.located import located
+from adaptmesh.files.whole import read_bytes
+from adaptmesh.mesh.incoming import Content
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Format:
 
 
 def _load_vtu(path: Path, fields: bool) -> Content:
-    from .vtu import decode
+    from adaptmesh.io.meshes.vtu import decode
 
     data = read_bytes(path)
     with located(path):
@@ -51,13 +51,13 @@ def _load_vtu(path: Path, fields: bool) -> Content:
 
 
 def _save_vtu(path: Path, content: Content) -> dict[Path, bytes]:
-    from .vtu import encode
+    from adaptmesh.io.meshes.vtu import encode
 
     return {path: encode(content)}
 
 
 def _load_vtk(path: Path, fields: bool) -> Content:
-    from .vtk import decode
+    from adaptmesh.io.meshes.vtk import decode
 
     data = read_bytes(path)
     with located(path):
@@ -65,13 +65,13 @@ def _load_vtk(path: Path, fields: bool) -> Content:
 
 
 def _save_vtk(path: Path, content: Content, **options: bool) -> dict[Path, bytes]:
-    from .vtk import encode
+    from adaptmesh.io.meshes.vtk import encode
 
     return {path: encode(content, **options)}
 
 
 def _load_gmsh(path: Path, fields: bool) -> Content:
-    from .msh import decode
+    from adaptmesh.io.meshes.msh import decode
 
     data = read_bytes(path)
     with located(path):
@@ -79,14 +79,14 @@ def _load_gmsh(path: Path, fields: bool) -> Content:
 
 
 def _save_gmsh(path: Path, content: Content, **options: object) -> dict[Path, bytes]:
-    from .gmsh import encode
+    from adaptmesh.io.meshes.gmsh import encode
 
     return {path: encode(content, **options)}  # type: ignore[arg-type]
 
 
 def _load_medit(path: Path, fields: bool) -> Content:
-    from .medit import decode
-    from .sol import add_companions
+    from adaptmesh.io.meshes.medit import decode
+    from adaptmesh.io.meshes.sol import add_companions
 
     data = read_bytes(path)
     with located(path):
@@ -97,15 +97,15 @@ def _load_medit(path: Path, fields: bool) -> Content:
 
 
 def _save_medit(path: Path, content: Content) -> dict[Path, bytes]:
-    from .medit import encode
-    from .sol import encode_companions
+    from adaptmesh.io.meshes.medit import encode
+    from adaptmesh.io.meshes.sol import encode_companions
 
     binary = path.suffix.lower() == ".meshb"
     return {path: encode(content, binary=binary), **encode_companions(content, path)}
 
 
 def _load_xdmf(path: Path, fields: bool) -> Content:
-    from .xdmf import decode
+    from adaptmesh.io.meshes.xdmf import decode
 
     data = read_bytes(path)
     with located(path):
@@ -113,7 +113,7 @@ def _load_xdmf(path: Path, fields: bool) -> Content:
 
 
 def _save_xdmf(path: Path, content: Content) -> dict[Path, bytes]:
-    from .xdmf import encode
+    from adaptmesh.io.meshes.xdmf import encode
 
     arrays = path.with_suffix(".h5")
     xml, hdf = encode(content, arrays.name)
@@ -121,13 +121,13 @@ def _save_xdmf(path: Path, content: Content) -> dict[Path, bytes]:
 
 
 def _load_triangle(path: Path, fields: bool) -> Content:
-    from .triangle import decode
+    from adaptmesh.io.meshes.triangle import decode
 
     return decode(path)
 
 
 def _save_triangle(path: Path, content: Content) -> Mapping[Path, bytes]:
-    from .triangle import encode
+    from adaptmesh.io.meshes.triangle import encode
 
     return encode(content, path)
 
@@ -148,7 +148,7 @@ def format_of(path: Path) -> Format:
     """The format that the extension of a path tells."""
     found = FORMATS.get(path.suffix.lower())
     if found is None:
-        from ..domain_io import OUTLINE_SUFFIXES  # which reads meshes, too
+        from adaptmesh.io.domains.read import OUTLINE_SUFFIXES  # which reads meshes, too
 
         if path.suffix.lower() in OUTLINE_SUFFIXES:
             raise FormatError(

@@ -7,13 +7,12 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
+from adaptmesh.errors import FormatError
+from adaptmesh.mesh.incoming import Array, Content, check_coordinates, check_vertices
+from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.mesh.periodic_sides import periodic_rows
 from metrics import tensor
 from metrics.control import ControlSpace, Metric, as_control_space
-
-from ..errors import FormatError
-from ..mesh import Mesh
-from .content import Array, Content, check_coordinates, check_vertices
-from .periodic_sides import periodic_rows
 
 _RESERVED = ("metric", "regions", "edge_tags")
 

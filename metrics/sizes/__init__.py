@@ -1,12 +1,12 @@
 """Ready-made control spaces: sizes from distances, walls, fronts, curvature, rasters, regions."""
 
+from .boundary_layer import BoundaryLayer, first_height
 from .curvature import BoundaryCurvature
 from .distance import Distance
 from .geometry import Geometry, Nearest
 from .raster import Raster
 from .regions import RegionSizes
 from .shock import Shock
-from .wall import BoundaryLayer, first_height
 
 __all__ = [
     "BoundaryCurvature",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats, Ints
+from metrics.checks import Floats, Ints
 
 __all__ = ["Cubics"]
 

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .. import _core
-from ..arrays import Floats, Ints, as_points
-from ..control import ControlSpace
-from ..errors import MetricError
+from metrics import _core
+from metrics.checks import Floats, Ints, as_points
+from metrics.control import ControlSpace
+from metrics.errors import MetricError
+
 from .geometry import Geometry, as_curves
 from .given import h_limit, number, positive
 from .growth import slope_of

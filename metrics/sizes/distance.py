@@ -7,8 +7,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
-from ..control import ControlSpace
+from metrics.checks import Floats
+from metrics.control import ControlSpace
+
 from .geometry import as_geometry
 from .given import chosen, h_limit, positive
 from .growth import Law, grown, slope_of

@@ -8,11 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .. import _core
-from ..arrays import Floats, Ints, as_points
-from ..errors import MetricError
+from metrics import _core
+from metrics.checks import Floats, Ints, as_points
+from metrics.errors import MetricError
+
 from .cubics import Cubics
-from .shapes import Part, Pieces, parts_of
+from .geometry_input import Part, Pieces, parts_of
 
 __all__ = ["Geometry", "Nearest", "as_geometry"]
 

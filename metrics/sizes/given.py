@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats, as_numbers
-from ..errors import AdaptmeshError, MetricError
+from metrics.checks import Floats, as_numbers
+from metrics.errors import AdaptmeshError, MetricError
 
 __all__ = ["chosen", "evaluated", "h_limit", "number", "positive"]
 

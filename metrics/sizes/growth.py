@@ -18,8 +18,9 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from ..arrays import Floats
-from ..errors import MetricError
+from metrics.checks import Floats
+from metrics.errors import MetricError
+
 from .given import chosen, number
 
 __all__ = ["Law", "grown", "slope_of"]

@@ -10,9 +10,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import Floats, as_numbers
-from ..control import ControlSpace
-from ..errors import MetricError
+from metrics.checks import Floats, as_numbers
+from metrics.control import ControlSpace
+from metrics.errors import MetricError
+
 from .given import chosen, number, positive
 
 __all__ = ["Raster"]

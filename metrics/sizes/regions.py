@@ -9,11 +9,12 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats, Ints, as_points, as_triangles
-from ..background import Background
-from ..control import ControlSpace
-from ..errors import MetricError
-from ..gradation import check_growth
+from metrics.background import Background
+from metrics.checks import Floats, Ints, as_points, as_triangles
+from metrics.control import ControlSpace
+from metrics.errors import MetricError
+from metrics.gradation import check_growth
+
 from .geometry import Geometry
 from .given import positive
 

@@ -8,13 +8,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
-from ..control import ControlSpace, Metric, as_control_space
-from ..errors import MetricError
+from metrics.checks import Floats
+from metrics.control import ControlSpace, Metric, as_control_space
+from metrics.errors import MetricError
+
+from .anisotropic_layer import layered, size_along
 from .geometry import as_curves
 from .given import evaluated, h_limit, positive
 from .growth import slope_of
-from .layer import layered, size_along
 
 __all__ = ["Shock"]
 

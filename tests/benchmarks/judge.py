@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 import adaptmesh as am
-from adaptmesh.invariants import fidelity
-from adaptmesh.invariants.domain_subject import DomainSubject
+from adaptmesh.mesh.validate import fidelity
+from adaptmesh.mesh.validate.domain_subject import DomainSubject
 from metrics import mesh_edges
 
 # Peers write coordinates with twelve digits, so points are off their segments by so much of the

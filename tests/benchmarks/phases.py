@@ -84,7 +84,7 @@ class Watched(metrics.ControlSpace):
 
 def phases(domain, metric):
     """CPU seconds of each stage of making one mesh."""
-    generate = importlib.import_module("adaptmesh.generate")
+    generate = importlib.import_module("adaptmesh.generate.generate")
     ledger = Ledger()
     with ExitStack() as patches:
         for function, name in STAGES.items():

@@ -10,7 +10,7 @@ import time
 import numpy as np
 
 import adaptmesh as am
-from adaptmesh.spaces import Space
+from adaptmesh.transfer.spaces import Space
 
 
 def integral(mesh, values, space):

@@ -16,8 +16,8 @@ from reference.whole_files import WHOLE
 import adaptmesh as am
 import metrics
 from adaptmesh import io
-from adaptmesh.domain_io import OUTLINE_SUFFIXES
 from adaptmesh.errors import FormatWarning
+from adaptmesh.io.domains.read import OUTLINE_SUFFIXES
 
 MEMORY = 1 << 30  # bytes that reading a file of some kB may take, beyond what is in use
 SECONDS = 20  # of processor time, where milliseconds are usual

@@ -1,0 +1,1 @@
+"""A mesh made again for another metric: from its domain, or by editing it."""

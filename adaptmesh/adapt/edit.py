@@ -1,0 +1,189 @@
+"""Editing a mesh where it does not fit a metric, and nowhere else.
+
+1. Load: the mesh as it is becomes one that can be edited; the metric is evaluated at its vertices.
+2. Outline: rows of edges along the boundary are cut anew where they are not unit.
+3. Zone: what touches an edge that is not unit, and its neighbours, is removed; all else is held.
+4. Fill: as in `generate`, ahead of a front (which passes what it finds good) and along edges; the
+   new vertices are smoothed. Edges can be too long where there was no vertex to remove: the mesh is
+   filled there all the same.
+5. The mesh is checked: one that overlaps itself, or did before, is made again from its domain.
+
+Removing what is off and filling the gaps makes a better mesh than collapsing and splitting edges:
+after many steps it still has the count and the quality of a fresh one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from adaptmesh import _core
+from adaptmesh.boundary.edge_lengths import measure_fresh_edges
+from adaptmesh.boundary.vertex_limit import Budget, Progress
+from adaptmesh.domain.domain import Domain
+from adaptmesh.domain.side import Lines
+from adaptmesh.errors import DomainError
+from adaptmesh.generate.generate import finished_mesh
+from adaptmesh.generate.optimisation import Optimisation, Settling, optimise, settle
+from adaptmesh.generate.placement import (
+    EdgePlacement,
+    FrontPlacement,
+    Samples,
+    insert_what_was_missed,
+    place_ahead_of_front,
+    place_along_edges,
+)
+from adaptmesh.mesh.boundary_polylines import Chains, find_chains, vertices_at
+from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.mesh.validate.covering import covered_once, simple_border
+from adaptmesh.mesh.validate.local import positive_triangles
+from adaptmesh.mesh.validate.subject import Subject
+from metrics import ControlSpace
+
+from .recut_boundary import had_better_be_anew, recut
+from .select_zone import Fit, Misfits, find_misfits
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Editing:
+    """What is edited.
+
+    Attributes
+    ----------
+    fit : Fit
+        What may stay.
+    turns : int
+        How often zones are made and filled; what one leaves needs another zone.
+    removal_rounds : int
+        How often a vertex that could not be removed is tried again.
+    most_removed : float
+        If it were more than this share of those that can be, a new mesh is made instead.
+    """
+
+    fit: Fit = field(default_factory=Fit)
+    turns: int = 3
+    removal_rounds: int = 5
+    most_removed: float = 0.75
+
+
+class Edited(NamedTuple):
+    """An edited mesh, and the share of its edges that are not unit, constrained ones aside."""
+
+    mesh: Mesh
+    share: float
+
+
+def edited(
+    mesh: Mesh,
+    domain: Domain,
+    samples: Samples,
+    options: Editing,
+    budget: Budget,
+    report: Progress,
+) -> Edited | None:
+    """The mesh, edited to fit a metric; None if a new one had better be made."""
+    report("loading the mesh", 0.02)
+    lines = Lines.of(domain)
+    chains = find_chains(mesh, lines)
+    if chains is None:
+        return None
+    held = holders(mesh, lines, chains)
+    mesher = load(mesh, domain, held, samples)
+    outline_fits = False
+    for turn in range(options.turns):
+        if not outline_fits:
+            before = chains
+            chains = recut(mesher, before, lines, samples, budget.max_vertices)
+            outline_fits = chains is before
+        misfits = measured_misfits(mesher, samples, options.fit)
+        removable = mesher.hold_all_but(misfits.zone)
+        if not removable and not misfits.has_long_edges:
+            break
+        if turn == 0 and removable > options.most_removed * np.sum(held == _core.FREE):
+            return None
+        mesher.remove_free(options.removal_rounds)
+        mesher.swap()
+        fill(mesher, samples, budget, within(report, turn / options.turns, 1 / options.turns))
+    if had_better_be_anew(mesher, chains, lines, samples, budget.max_vertices):
+        return None
+    share = measured_misfits(mesher, samples, options.fit).share
+    mesher.set_constrained(chains.edges, lines.segments[chains.edge_lines])
+    mesher.compact()
+    new = finished_mesh(domain, mesher, mesher.labels())
+    if not _is_plane(new):
+        return None
+    report("done", 1.0)
+    return Edited(new, share)
+
+
+def measured_misfits(mesher: _core.Mesher, samples: Samples, fit: Fit) -> Misfits:
+    """Measure what has changed, and find what does not fit."""
+    measure_fresh_edges(mesher, samples, uncut_below=np.inf)
+    return find_misfits(mesher, samples, fit)
+
+
+def _is_plane(mesh: Mesh) -> bool:
+    """Whether the mesh covers the plane once, where it does; exactly.
+
+    The outline is edited by what can be seen from inside. Across a slit, or in the bend of a curve,
+    its new edges can meet others, or pass over them.
+    """
+    subject = Subject(mesh)
+    looks = (positive_triangles, simple_border, covered_once)
+    return not any(look(subject).broken for look in looks)
+
+
+def fill(mesher: _core.Mesher, samples: Samples, budget: Budget, report: Progress) -> None:
+    """As `generate` does it, but all that is held stays where it is."""
+    place_ahead_of_front(mesher, samples, FrontPlacement(), budget, report)
+    place_along_edges(mesher, samples, EdgePlacement(), budget, report)
+    if insert_what_was_missed(mesher, samples):
+        place_along_edges(mesher, samples, EdgePlacement(), budget, report)
+    optimise(mesher, samples, Optimisation(), budget, report)
+    settle(mesher, samples, Settling(), budget)
+
+
+def within(report: Progress, start: float, share: float) -> Progress:
+    """Reports a part of the work as that part of the whole."""
+    return lambda stage, fraction: report(stage, start + share * fraction)
+
+
+def holders(mesh: Mesh, lines: Lines, chains: Chains) -> Ints:
+    """What holds each vertex, (n,): nothing, its segment, or that it is a corner of the domain."""
+    held = np.full(len(mesh.points), _core.FREE, np.int32)
+    held[chains.vertices] = lines.segments[chains.lines]
+    held[vertices_at(mesh, lines.corners)] = _core.FIXED
+    return held
+
+
+def load(mesh: Mesh, domain: Domain, held: Ints, metric: ControlSpace) -> _core.Mesher:
+    """The mesh in the hands of a mesher; labels are regions."""
+    try:
+        return _core.Mesher(
+            mesh.points,
+            metric(mesh.points),
+            mesh.triangles,
+            regions_in_domain(mesh, domain),
+            mesh.edges,
+            held,
+        )
+    except ValueError as error:
+        raise DomainError(f"the mesh cannot be adapted: {error}") from error
+
+
+def regions_in_domain(mesh: Mesh, domain: Domain) -> Ints:
+    """The regions of the triangles as the domain numbers them, by name if they have one."""
+    number = np.zeros(max(int(mesh.regions.max()), 0) + 1, np.int32)
+    unnamed = np.setdiff1d(domain.seed_regions, list(domain.region_names.values()))
+    unnamed = unnamed[(unnamed > 0) & (unnamed < len(number))]
+    number[unnamed] = unnamed
+    for name, old in mesh.region_names.items():
+        if 0 <= old < len(number):
+            number[old] = domain.region_names.get(name, 0)
+    return number[mesh.regions]

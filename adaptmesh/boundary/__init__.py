@@ -1,0 +1,1 @@
+"""The boundary of a domain cut into unit edges."""

@@ -1,0 +1,142 @@
+"""The control space that --size or --metric asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import typer
+from numpy.typing import NDArray
+
+from adaptmesh.errors import FormatError
+
+if TYPE_CHECKING:
+    from adaptmesh.domain.domain import Domain
+    from adaptmesh.mesh.mesh import Mesh
+    from metrics import ControlSpace
+
+SOLUTION_SUFFIXES = (".sol", ".solb")
+RASTER_SUFFIXES = (".tif", ".tiff", ".asc", ".nc", ".grd")
+
+
+class Request:
+    """What --size, --metric and --metric-field ask for, checked before any file is read.
+
+    Parameters
+    ----------
+    size : str, optional
+        An expression.
+    metric : path, optional
+        A solution at the vertices of the mesh given, a mesh with a metric or sizes, or a raster.
+    field : str, optional
+        The name of the metric among the fields of a mesh.
+    """
+
+    def __init__(self, size: str | None, metric: Path | None, field: str | None = None) -> None:
+        import metrics
+        from adaptmesh.io.formats import FORMATS
+
+        if size is not None and metric is not None:
+            raise typer.BadParameter("give one of --size and --metric")
+        self.size = None if size is None else metrics.Expression(size)
+        self.metric, self.field = metric, field
+        suffix = "" if metric is None else metric.suffix.lower()
+        self._holds_a_mesh = suffix in FORMATS
+        if field is not None and not self._holds_a_mesh:
+            raise typer.BadParameter("--metric-field names a field in the mesh given as --metric")
+        if metric is not None and suffix not in (*FORMATS, *SOLUTION_SUFFIXES, *RASTER_SUFFIXES):
+            raise typer.BadParameter(
+                f"--metric {metric}: expected a solution ({' '.join(SOLUTION_SUFFIXES)}), a mesh "
+                f"({' '.join(FORMATS)}) or a raster ({' '.join(RASTER_SUFFIXES)})"
+            )
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether neither is given."""
+        return self.size is None and self.metric is None
+
+    def refuse_empty(self) -> None:
+        """Raise a usage error unless one of --size and --metric is given."""
+        if self.is_empty:
+            raise typer.BadParameter("give one of --size and --metric")
+
+    def refuse_without_mesh(self) -> None:
+        """Raise a usage error if the metric is that of the vertices of a mesh."""
+        if self.metric is not None and self.metric.suffix.lower() in SOLUTION_SUFFIXES:
+            raise typer.BadParameter(
+                f"--metric {self.metric} gives values at the vertices of a mesh, and DOMAIN is an "
+                "outline without any: use --size, a metric in a mesh file or a raster, or give the "
+                "mesh as DOMAIN"
+            )
+
+    def control_space(self, mesh: Mesh | None, cleaned: Mesh | None = None) -> ControlSpace:
+        """The control space; values of a solution belong to the vertices of `mesh`.
+
+        They are carried by what became of this mesh by `Mesh.cleaned`, if that is given.
+        """
+        if self.size is not None:
+            return self.size
+        assert self.metric is not None
+        if self._holds_a_mesh:
+            return _of_mesh_file(self.metric, self.field)
+        if self.metric.suffix.lower() in RASTER_SUFFIXES:
+            import metrics
+
+            return metrics.Raster.read(self.metric)
+        assert mesh is not None
+        return _of_solution(self.metric, mesh, mesh if cleaned is None else cleaned)
+
+
+def _of_solution(path: Path, mesh: Mesh, carrier: Mesh) -> ControlSpace:
+    import adaptmesh as am
+    from metrics import Background
+
+    values = am.read_sol(path)
+    if len(values) != len(mesh.points):
+        raise FormatError(
+            f"{path} has values for {len(values)} vertices, but the mesh has {len(mesh.points)}: "
+            "they do not belong together"
+        )
+    if carrier is not mesh:
+        values = values[carrier.kept]
+    return Background(carrier.points, carrier.triangles, values)
+
+
+def _of_mesh_file(path: Path, field: str | None) -> ControlSpace:
+    import adaptmesh as am
+    from metrics import Background
+
+    carrier, fields = am.read(path), am.read_fields(path)
+    values = _chosen(path, fields, field, len(carrier.points))
+    return Background(carrier.points, carrier.triangles, values)
+
+
+def _chosen(
+    path: Path, fields: Mapping[str, NDArray[Any]], name: str | None, n_points: int
+) -> NDArray[Any]:
+    """The field of this name; else "metric", or the only one that can be sizes or a metric."""
+    able = [key for key, v in fields.items() if v.shape in ((n_points,), (n_points, 3))]
+    if name is None:
+        name = "metric" if "metric" in able else able[0] if len(able) == 1 else None
+    if name in able:
+        return np.asarray(fields[name])
+    found = ", ".join(map(repr, able)) or "none"
+    if name is None:
+        raise FormatError(
+            f"{path}: expected one field of sizes or metrics at the vertices, found {found}"
+            + ("; choose by --metric-field" if able else "")
+        )
+    raise FormatError(f"{path}: no field {name!r} of sizes or metrics at the vertices; {found}")
+
+
+def graded(
+    domain: Domain, control: ControlSpace, gradation: float | None, max_vertices: int | None
+) -> ControlSpace:
+    """The metric that the mesh is made and measured for."""
+    if gradation is None:
+        return control
+    from adaptmesh.generate.generate import MAX_VERTICES, graded_within_budget
+
+    return graded_within_budget(domain, control, gradation, max_vertices or MAX_VERTICES)

@@ -1,0 +1,1 @@
+"""What to mesh: sides, paths of curves, holes, regions, names, periodicity."""

@@ -1,0 +1,126 @@
+"""The sides of a domain as straight pieces and short cubics, to measure distances from them.
+
+A curve from u0 to u1 is followed by the cubic that has its ends and its derivatives there
+(Hermite): the distance between the two falls with the fourth power of the turn, so that pieces that
+turn by half a degree are as good as the curve.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .paths import derivatives_of_parts, points_on
+
+if TYPE_CHECKING:
+    from .domain import Domain
+
+Floats = NDArray[np.float64]
+Index = NDArray[np.integer]
+Bools = NDArray[np.bool_]
+
+CHORD, CUBIC = 1e-6, 1e-10
+"""How far chords, and cubics, are off the curves at most, as shares of the extent of the domain."""
+
+MOST_PARTS, MOST_ROUNDS = 256, 8
+"""Pieces are divided into so many parts at a time, and so often."""
+
+LOOKS = np.array([0.25, 0.5, 0.75])
+"""Where on a piece it is compared with the curve."""
+
+
+class CubicPieces(NamedTuple):
+    """Pieces of the sides of a domain, each a function of t from 0 to 1.
+
+    Attributes
+    ----------
+    ends, derivatives : (k, 2, 2) arrays
+        The points at t = 0 and 1, and the derivatives there; those of straight pieces are the
+        vectors from end to end.
+    segments : (k,) array of int
+        The segment of the domain that each is, or is a part of the curve of, in its direction.
+    heights : (k,) array of float
+        How far the curve of that segment is off the segment; 0 where it is straight.
+    """
+
+    ends: Floats
+    derivatives: Floats
+    segments: Index
+    heights: Floats
+
+
+def cubic_pieces(domain: Domain, chosen: Bools) -> CubicPieces:
+    """The pieces of some of the segments of a domain, chosen by number (n,)."""
+    curved = domain.curved
+    straight = np.flatnonzero(chosen & (curved.segment_runs < 0))
+    ends = domain.points[domain.segments[straight]]
+    vectors = np.repeat(np.diff(ends, axis=1), 2, axis=1)
+    segments = np.flatnonzero(chosen & (curved.segment_runs >= 0))
+    if not len(segments):
+        return CubicPieces(ends, vectors, straight, np.zeros(len(straight)))
+    segment, p, d = _divided(domain, segments)
+    chord = domain.points[domain.segments[segment]]
+    middle = 0.5 * (p[:, 0] + p[:, 1]) + 0.125 * (d[:, 0] - d[:, 1])
+    heights = np.zeros(len(chosen))
+    for places in (p[:, 0], p[:, 1], middle):
+        np.maximum.at(heights, segment, _off_chord(places[:, None], chord)[:, 0])
+    return CubicPieces(
+        np.concatenate([ends, p]),
+        np.concatenate([vectors, d]),
+        np.concatenate([straight, segment]),
+        np.concatenate([np.zeros(len(straight)), heights[segment]]),
+    )
+
+
+def _divided(domain: Domain, segment: Index) -> tuple[Index, Floats, Floats]:
+    """Parts of the curves of segments: the segment of each, the points and derivatives at its ends.
+
+    They are divided until they, and their chords, are as near to the curves as they must be.
+    """
+    curved, runs = domain.curved, domain.curved.runs
+    extent = float(np.ptp(domain.points, axis=0).max())
+    u = curved.segment_parameters[segment]
+    for again in range(MOST_ROUNDS, -1, -1):
+        run, n = curved.segment_runs[segment].astype(np.intp), len(segment)
+        part = u.mean(axis=1).astype(np.intp)
+        p = np.stack([points_on(runs, run, u[:, i]) for i in (0, 1)], axis=1)
+        d = np.stack([derivatives_of_parts(runs, run, part, u[:, i]) for i in (0, 1)], axis=1)
+        d *= np.diff(u, axis=1)[:, :, None]
+        at = u[:, :1] + LOOKS * np.diff(u, axis=1)
+        looks = points_on(runs, np.repeat(run, len(LOOKS)), at.ravel()).reshape(n, -1, 2)
+        off = np.linalg.norm(looks - hermite(p, d, LOOKS), axis=2).max(axis=1)
+        height = _off_chord(looks, p).max(axis=1)
+        want = np.maximum((off / (CUBIC * extent)) ** 0.25, (height / (CHORD * extent)) ** 0.5)
+        parts = np.ceil(want).clip(1, MOST_PARTS).astype(np.intp)
+        if (parts == 1).all() or not again:
+            break
+        segment, u = np.repeat(segment, parts), _equal_parts(u, parts)
+    return segment, p, d
+
+
+def _equal_parts(u: Floats, parts: Index) -> Floats:
+    """Ranges (k, 2) divided into so many equal parts each; ends that meet are the same number."""
+    k = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    n, low, high = np.repeat(parts, parts), np.repeat(u[:, 0], parts), np.repeat(u[:, 1], parts)
+    begin = low + k / n * (high - low)
+    end = np.where(k + 1 == n, high, low + (k + 1) / n * (high - low))
+    return np.stack([begin, end], axis=1)
+
+
+def hermite(ends: Floats, derivatives: Floats, t: Floats) -> Floats:
+    """Points (k, len(t), 2) of cubics with these ends and derivatives (k, 2, 2)."""
+    a, b = ends[:, None, 0], ends[:, None, 1]
+    c, d = derivatives[:, None, 0], derivatives[:, None, 1]
+    t = t[None, :, None]
+    out: Floats = a + t * (c + t * (3 * (b - a) - 2 * c - d + t * (c + d - 2 * (b - a))))
+    return out
+
+
+def _off_chord(points: Floats, ends: Floats) -> Floats:
+    """Distances (k, m) of points (k, m, 2) from the lines through ends (k, 2, 2)."""
+    v, w = np.diff(ends, axis=1), points - ends[:, :1]
+    length = np.maximum(np.hypot(v[..., 0], v[..., 1]), np.finfo(float).tiny)
+    out: Floats = np.abs(v[..., 0] * w[..., 1] - v[..., 1] * w[..., 0]) / length
+    return out

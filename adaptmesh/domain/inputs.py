@@ -1,0 +1,347 @@
+"""What a domain is made of, checked: points, segments, names, holes and regions."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from adaptmesh.errors import DomainError
+from adaptmesh.value import FrozenMapping
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+Label = str | int
+"""A name, or a number that has none."""
+Value = TypeVar("Value")
+ByLabel = Mapping[str, Value] | Mapping[int, Value] | Mapping[Label, Value]
+
+Holes = ArrayLike | str | None
+"""Points in the holes, "nesting", or None if they are to be found; see `Domain`."""
+
+LARGEST = 1e75  # coordinate: its fourth power is still a double
+FLAT = 1e-9
+"""Heights that differ by at most this share of the extent are rounding: the points are plane."""
+OR_REPAIR = "or let adaptmesh.repair do it"
+
+
+@dataclass(frozen=True, eq=False)
+class Inside:
+    """What is inside the boundaries: holes, and regions with their seeds.
+
+    Holes are found by nesting or given by points; `certain` if those found have to be certain.
+    """
+
+    nesting: bool
+    certain: bool
+    holes: Floats
+    region_names: Mapping[str, int]
+    seeds: Floats
+    seed_regions: Ints
+
+    @classmethod
+    def checked(
+        cls,
+        holes: ArrayLike | str | None,
+        regions: ByLabel[ArrayLike] | None,
+        given: Mapping[str, int] | None,
+    ) -> Inside:
+        """From the arguments of `Domain`."""
+        if isinstance(holes, str) and holes != "nesting":
+            raise DomainError(f"holes={holes!r}: give points inside the holes, or 'nesting'")
+        given_holes = () if holes is None or isinstance(holes, str) else holes
+        nesting = given_holes is not holes
+        places = checked_points(given_holes, "hole", least=0)
+        return cls(nesting, holes is None, places, *checked_regions(regions, given))
+
+
+def refuse_holes(holes: Holes, given: str) -> None:
+    """Raise a `DomainError` if holes are given for a file that says itself what they are."""
+    if holes is not None:
+        raise DomainError(
+            f"holes={holes!r}: there are {given}, which say what is inside; leave holes out"
+        )
+
+
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    array.flags.writeable = False
+    return array
+
+
+def checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
+    """Coordinates (n, 2) that areas can be computed of, or a `DomainError`."""
+    try:
+        if np.iscomplexobj(points):
+            raise TypeError("they are complex")
+        out = np.array(points, dtype=np.float64, order="C")
+    except (TypeError, ValueError) as error:
+        raise DomainError(f"{what}s must be an (n, 2) array of numbers: {error}") from None
+    if out.size == 0:
+        out = out.reshape(0, 2)
+    if out.ndim == 2 and out.shape[1] == 3:
+        out = _without_heights(out, what)
+    if out.ndim != 2 or out.shape[1] != 2:
+        raise DomainError(f"{what}s must be an (n, 2) array, not one of shape {out.shape}")
+    if len(out) < least:
+        raise DomainError(f"{len(out)} {what}s: at least {least} are needed")
+    check_range(out, what)
+    return read_only(out)
+
+
+def check_range(out: Floats, what: str) -> None:
+    """Refuse coordinates of which no exact signs and no areas can be computed."""
+    bad = np.flatnonzero(~np.isfinite(out).all(axis=1))
+    if len(bad):
+        x, y = out[bad[0]]
+        raise DomainError(f"{what} {bad[0]} is ({x}, {y}): coordinates must be finite")
+    bad = np.flatnonzero((np.abs(out) > LARGEST).any(axis=1))
+    if len(bad):
+        x, y = out[bad[0]]
+        raise DomainError(
+            f"{what} {bad[0]} is ({x:g}, {y:g}): areas and squares of coordinates beyond "
+            f"{LARGEST:g} overflow; choose another unit of length"
+        )
+
+
+def _without_heights(points: Floats, what: str) -> Floats:
+    """Points (n, 3) that lie in a plane z = constant without z, or a `DomainError`."""
+    z = points[:, 2]
+    if np.isfinite(points).all() and not is_level(z, points[:, :2]):
+        i = int(np.argmax(np.abs(z - z[0])))
+        raise DomainError(
+            f"{what} {i} is at height {z[i]:g}, and {what} 0 at {z[0]:g}: a domain is plane, give "
+            "[:, :2] of the points"
+        )
+    return np.ascontiguousarray(points[:, :2])
+
+
+def checked_number(value: object, what: str) -> float:
+    """A finite real number, or a `DomainError`."""
+    try:
+        number = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not math.isfinite(number) or isinstance(value, str):
+        raise DomainError(f"{what}={value!r}: expected a finite number")
+    return number
+
+
+def checked_pairs(segments: ArrayLike, n_points: int) -> Ints:
+    """Pairs of point numbers, (k, 2), or a `DomainError`."""
+    raw = np.asarray(segments)
+    if raw.size == 0:
+        raise DomainError("no segments: say which points the boundary joins, e.g. Domain.polygon")
+    if raw.ndim != 2 or raw.shape[1] != 2:
+        raise DomainError(f"segments must be a (k, 2) array, not one of shape {raw.shape}")
+    if not np.issubdtype(raw.dtype, np.integer):
+        raise DomainError(f"segments must be integers, pairs of point numbers, not {raw.dtype}")
+    bad = np.flatnonzero(((raw < 0) | (raw >= n_points)).any(axis=1))
+    if len(bad):
+        i = bad[0]
+        raise DomainError(
+            f"segment {i} joins points {raw[i, 0]} and {raw[i, 1]}, but the points are numbered "
+            f"0 to {n_points - 1}"
+        )
+    return read_only(np.array(raw, dtype=np.int32, order="C"))
+
+
+def checked_segments(segments: ArrayLike, points: Floats) -> Ints:
+    """Pairs of different points, (k, 2), or a `DomainError`."""
+    out = checked_pairs(segments, len(points))
+    bad = np.flatnonzero((points[out[:, 0]] == points[out[:, 1]]).all(axis=1))
+    if len(bad):
+        i = bad[0]
+        x, y = points[out[i, 0]]
+        raise DomainError(
+            f"segment {i} has no length: its ends are both ({x:g}, {y:g}); remove it, {OR_REPAIR}"
+        )
+    return out
+
+
+def check_is_mapping(labels: object, what: str) -> None:
+    """Refuse what gives nothing for each name."""
+    if not isinstance(labels, Mapping):
+        raise DomainError(f"{what} must be a mapping of names, not {type(labels).__name__}")
+
+
+def checked_regions(
+    regions: ByLabel[ArrayLike] | None, given: Mapping[str, int] | None
+) -> tuple[Mapping[str, int], Floats, Ints]:
+    """The number of each name, the seeds (s, 2), and the region of each, or a `DomainError`."""
+    regions = {} if regions is None else regions
+    check_is_mapping(regions, "regions")
+    names, numbers = numbered(regions, given, "region")
+    seeds, owners = [], []
+    for number, (name, where) in zip(numbers, regions.items(), strict=True):
+        points = checked_points(np.atleast_2d(np.asarray(where)), f"region {name!r} point", least=1)
+        seeds.append(points)
+        owners += [number] * len(points)
+    all_seeds = np.concatenate(seeds) if seeds else np.empty((0, 2))
+    return names, read_only(all_seeds), read_only(np.array(owners, np.int32))
+
+
+def checked_names(
+    names: ByLabel[Iterable[int]] | None,
+    n: int,
+    what: str = "segment",
+    given: Mapping[str, int] | None = None,
+) -> tuple[Mapping[str, int], Ints]:
+    """The tag of each name and of each of n segments (or curves), or a `DomainError`."""
+    names = {} if names is None else names
+    check_is_mapping(names, "names")
+    tag_of, numbers = numbered(names, given, "tag")
+    tags = np.zeros(n, np.int32)
+    for tag, (name, segments) in zip(numbers, names.items(), strict=True):
+        for i in _checked_numbers(segments, name, what):
+            is_number = isinstance(i, (int, np.integer)) and not isinstance(i, bool)
+            if not is_number or not 0 <= i < n:
+                raise DomainError(
+                    f"name {name!r} is given to {what} {i!r}, but the {what}s are numbered "
+                    f"0 to {n - 1}"
+                )
+            if tags[i] not in (0, tag):
+                other = name_of_number(tag_of, tags)[int(tags[i])]
+                raise DomainError(f"{what} {i} is named both {other!r} and {name!r}: choose one")
+            tags[i] = tag
+    return tag_of, read_only(tags)
+
+
+def _checked_numbers(numbers: object, name: object, what: str) -> Iterable[Any]:
+    """What a name is given to, if it is a sequence, or a `DomainError`."""
+    if not isinstance(numbers, Iterable):
+        raise DomainError(
+            f"name {name!r} is given to {numbers!r}: expected a sequence of numbers of {what}s, or "
+            "a function of points"
+        )
+    return numbers
+
+
+def numbered(
+    labels: Iterable[Label], given: Mapping[str, int] | None, what: str
+) -> tuple[Mapping[str, int], list[int]]:
+    """The number of each name, and of each label in order.
+
+    A number stands for itself, and has no name; a name has the number that is given for it, or else
+    the least one from 1 on that nothing has yet.
+    """
+    given = {} if given is None else given
+    check_is_mapping(given, f"{what}s by name")
+    labels = [_checked_label(k, what) for k in labels]
+    taken = {*given.values(), *(k for k in labels if isinstance(k, int))}
+    for number in taken:
+        if not isinstance(number, (int, np.integer)) or not -(2**31) <= number < 2**31:
+            raise DomainError(f"{what} {number!r}: a whole number of 32 bits is wanted")
+    free = (number for number in itertools.count(1) if number not in taken)
+    names: dict[str, int] = {}
+    numbers = []
+    for label in labels:
+        if isinstance(label, str):
+            names[label] = int(given[label]) if label in given else next(free)
+            if not names[label]:
+                raise DomainError(
+                    f"{what} 0 for {label!r}: 0 is the {what} of all that has no name, which would "
+                    "be named, too; give another number"
+                )
+        numbers.append(names[label] if isinstance(label, str) else label)
+    names.update({name: int(number) for name, number in given.items()})
+    return FrozenMapping(names), numbers
+
+
+def _checked_label(label: object, what: str) -> Label:
+    if isinstance(label, (int, np.integer)):
+        return int(label)
+    if not isinstance(label, str) or not label:
+        raise DomainError(f"the name {label!r}: a text or, for a bare {what}, a number is wanted")
+    return str(label)
+
+
+def name_of_number(
+    names: Mapping[str, int], numbers: NDArray[np.signedinteger]
+) -> dict[int, Label]:
+    """How messages call each number: by its name, or if it has none as it is."""
+    nameless: dict[int, Label] = {number: number for number in np.unique(numbers).tolist()}
+    return {**nameless, **{number: name for name, number in names.items()}}
+
+
+def labelled(tags: NDArray[np.signedinteger]) -> dict[Label, list[int]]:
+    """The items with each number but 0, as `Domain` takes them, to go with names and numbers."""
+    return {number: rows.tolist() for number, rows in rows_of_each(tags).items() if number}
+
+
+def rows_of_each(numbers: NDArray[np.integer]) -> dict[int, NDArray[np.intp]]:
+    """The rows with each number, ascending, in the order of the numbers."""
+    order = np.argsort(numbers, kind="stable")
+    ordered = numbers[order]
+    first = np.flatnonzero(ordered[1:] != ordered[:-1]) + 1
+    groups = np.split(order, first) if len(order) else []
+    return {int(numbers[rows[0]]): rows for rows in groups}
+
+
+def is_level(heights: Floats, xy: Floats) -> bool:
+    """Whether points lie in one plane z = constant, to `FLAT` of their extent."""
+    half_width = heights.max() / 2 - heights.min() / 2  # halves, as differences may overflow
+    half_extent = (xy.max(axis=0) / 2 - xy.min(axis=0) / 2).max()
+    return bool(half_width <= FLAT * half_extent)
+
+
+@dataclass(frozen=True, eq=False)
+class JoinedRings:
+    """Closed rings as points and segments.
+
+    Attributes
+    ----------
+    points : (n, 2) array
+        All different: rings that share a point share its number.
+    segments : (k, 2) array
+        In order, ring by ring; none without length.
+    ring : (k,) array
+        The ring of each segment.
+    given : (k,) array
+        The number of each segment, where a point repeated in a row starts one, too.
+    n_given : int
+        How many there are then.
+    """
+
+    points: Floats
+    segments: NDArray[np.int64]
+    ring: NDArray[np.int64]
+    given: NDArray[np.int64]
+    n_given: int
+
+
+def joined_rings(rings: Sequence[ArrayLike]) -> JoinedRings:
+    """Points and segments of closed rings.
+
+    A ring may end where it starts, or not; points repeated in a row count once.
+    """
+    points, segments, ring_of, given, n, n_given = [], [], [], [], 0, 0
+    for k, ring in enumerate(rings):
+        p = checked_points(ring, f"ring {k}: point", least=0)
+        if len(p) and (p[0] == p[-1]).all():
+            p = p[:-1]
+        new = np.flatnonzero((p != np.roll(p, -1, axis=0)).any(axis=1))
+        different = len(np.unique(p, axis=0))
+        if different < 3:
+            raise DomainError(f"ring {k} has {different} different points: at least 3 are needed")
+        number = n + np.arange(len(new))
+        points.append(p[new])
+        segments.append(np.stack([number, np.roll(number, -1)], axis=1))
+        ring_of.append(np.full(len(new), k))
+        given.append(n_given + new)
+        n += len(new)
+        n_given += len(p)
+    joined = np.concatenate(points)
+    pairs = np.concatenate(segments)
+    unique, first, inverse = np.unique(joined, axis=0, return_index=True, return_inverse=True)
+    if len(unique) < len(joined):
+        order = np.argsort(first)  # np.unique sorts; keep the order in which points were given
+        number_of = np.empty(len(unique), int)
+        number_of[order] = np.arange(len(unique))
+        joined, pairs = unique[order], number_of[inverse.ravel()][pairs]
+    return JoinedRings(joined, pairs, np.concatenate(ring_of), np.concatenate(given), n_given)

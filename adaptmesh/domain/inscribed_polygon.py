@@ -1,0 +1,298 @@
+"""The curves of a domain, and the polygon inscribed in them that its other parts work with."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from adaptmesh import _core
+from adaptmesh.curves import Curve
+from adaptmesh.errors import DomainError
+from adaptmesh.value import Value
+
+from . import inputs as domain_input
+from .inputs import Floats, Inside, Ints, read_only
+from .paths import Run, are_near, join, length_of, name_of_curve, points_on
+from .polyline import Surroundings, chords_along
+
+JOINED = 1e-12
+JOINED_PLACES = 8
+"""Ends of curves that are nearer than this share of the extent, or than so many units in the last
+place of coordinates, are one, if nothing else is said."""
+
+FIRST_CHORDS = 8
+"""Chords along each curve before they are looked at."""
+
+TURN = 15.0
+"""Curves turn by at most so many degrees along a chord of the inscribed polygon."""
+
+IN_PLACES = 1e4
+"""A curve is larger than this many units in the last place of its coordinates."""
+
+MESH_TURN = 60.0
+"""And by at most so many along an edge of a mesh: where they turn by more at once is a corner."""
+
+OUTLINE_LOOKS = 4
+"""In so many steps a curve is looked at along each chord of an outline."""
+
+LOOKS, STRAIGHT_LOOKS = np.linspace(0, 1, 9), np.array([0.0, 1.0])
+"""Where a curve is looked at to see how large it is, besides its kinks; and a straight one."""
+
+GAUSS = np.polynomial.legendre.leggauss(10)
+
+
+@dataclass(frozen=True, eq=False)
+class Curved(Value):
+    """Which points and segments of a domain are on curves.
+
+    Attributes
+    ----------
+    curves : tuple of Curve
+        As they were given; none for a domain of points and segments.
+    runs : tuple of Run
+        What is curved, from corner to corner.
+    segment_curves : (k,) array of int32
+        The curve that each segment of the domain lies on or is a chord of; -1 for none.
+    segment_runs : (k,) array of int32
+        The run that it is a chord of; -1 if it is straight itself.
+    segment_parameters : (k, 2) array
+        The parameters of its ends on the run.
+    is_vertex : (n,) array of bool
+        Whether a point of the domain is a vertex of every mesh; the others only hold the chords.
+    corner_angle, join_tolerance : float
+        With which the curves were joined.
+    """
+
+    curves: tuple[Curve, ...]
+    runs: tuple[Run, ...]
+    segment_curves: Ints
+    segment_runs: Ints
+    segment_parameters: Floats
+    is_vertex: NDArray[np.bool_]
+    corner_angle: float = 0.0
+    join_tolerance: float = 0.0
+
+    @classmethod
+    def nothing(cls, n_points: int, n_segments: int) -> Curved:
+        """Of a domain of points and segments."""
+        none = read_only(np.full(n_segments, -1, np.int32))
+        parameters = read_only(np.zeros((n_segments, 2)))
+        return cls((), (), none, none, parameters, read_only(np.ones(n_points, bool)))
+
+    def describe(self, segment: int) -> str:
+        """The curve of a segment in words."""
+        return name_of_curve(self.curves, int(self.segment_curves[segment]))
+
+    def areas_beside(self, run: NDArray[np.integer], u: Floats) -> Floats:
+        """Areas between chords, given by run (k,) and parameters (k, 2), and their curves.
+
+        Chords of a run may not overlap. Positive where the curve bends to the right of its chord.
+        """
+        out = np.zeros(len(run))
+        order = np.lexsort((u[:, 0], run))
+        first = np.flatnonzero(np.diff(run[order], prepend=-1))
+        for mine in np.split(order, first)[1:]:
+            out[mine] = _areas_beside(self.runs[run[mine[0]]], u[mine])
+        return out
+
+    def chords_within(self, tolerance: float) -> tuple[NDArray[np.integer], Floats]:
+        """Chords, run (k,) and parameters (k, 2), that are this near to their curves."""
+        chosen = self.segment_runs >= 0
+        run: NDArray[np.integer] = self.segment_runs[chosen]
+        u = self.segment_parameters[chosen]
+        t = np.linspace(0, 1, OUTLINE_LOOKS + 1)
+        while True:
+            at = u[:, :1] + t * (u[:, 1:] - u[:, :1])
+            p = points_on(self.runs, np.repeat(run, len(t)), at.ravel()).reshape(-1, len(t), 2)
+            d = p[:, -1] - p[:, 0]
+            off = p - p[:, :1]
+            height = np.abs(off[..., 0] * d[:, None, 1] - off[..., 1] * d[:, None, 0]).max(axis=1)
+            parts = np.ceil(np.sqrt(height / np.hypot(*d.T) / tolerance)).clip(1).astype(np.intp)
+            if (parts == 1).all():
+                return run, u
+            first = np.repeat(np.cumsum(parts) - parts, parts)
+            k = np.arange(parts.sum()) - first
+            start = np.repeat(u[:, 0], parts) + k * np.repeat((u[:, 1] - u[:, 0]) / parts, parts)
+            end = np.where(
+                k == np.repeat(parts, parts) - 1, np.repeat(u[:, 1], parts), np.roll(start, -1)
+            )
+            run, u = np.repeat(run, parts), np.stack([start, end], axis=1)
+
+
+def _areas_beside(line: Run, u: Floats) -> Floats:
+    """Areas between chords (k, 2) of a run, in order, and the curve.
+
+    By Gauss's quadrature of (p - p0) x dp / 2, p0 where the chord begins, on halves of what is
+    between knots of the curve. Joining may have moved vertices off the ends of curves::
+
+          vertex          the way from vertex to vertex, as seen from the first, jumps where it
+            |             comes onto a curve, from one curve to the next, and off the last
+            '-- curve
+    """
+    ends = np.unique(np.concatenate([u.ravel(), line.knots]))
+    ends = np.sort(np.concatenate([ends, 0.5 * (ends[1:] + ends[:-1])]))
+    middle = 0.5 * (ends[1:] + ends[:-1])
+    chord = np.searchsorted(u[:, 0], middle) - 1
+    inside = (chord >= 0) & (middle < u[chord, 1])
+    chord, part = chord[inside], middle[inside].astype(np.intp)
+    start, du = ends[:-1][inside], np.diff(ends)[inside]
+
+    p0, p1 = line.point(u[:, 0]), line.point(u[:, 1])
+    x, w = 0.5 * (GAUSS[0] + 1), 0.5 * GAUSS[1]
+    at = (start[:, None] + x * du[:, None]).ravel()
+    p = line.point(at) - np.repeat(p0[chord], len(x), axis=0)
+    swept = cross(p, line.derivative(at)).reshape(-1, len(x)) @ w * du
+
+    onto, off = (line.point_of_part(part, at) for at in (start, start + du))
+    is_last = np.append(chord[1:] != chord[:-1], True)
+    to = np.where(is_last[:, None], p1[chord], np.roll(onto, -1, axis=0))
+    jumps = cross(off - p0[chord], to - p0[chord])
+    out: Floats = 0.5 * np.bincount(chord, swept + jumps, minlength=len(u)).astype(np.float64)
+    return out
+
+
+def cross(p: Floats, q: Floats) -> Floats:
+    """Areas of the parallelograms of vectors (k, 2)."""
+    out: Floats = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
+    return out
+
+
+class Skeleton(NamedTuple):
+    """The polygon inscribed in curves, as a domain takes it."""
+
+    points: Floats
+    segments: Ints
+    segment_tags: Ints
+    curved: Curved
+
+
+def skeleton_of(
+    curves: Sequence[Curve],
+    tags: Ints,
+    inside: Inside,
+    isolated: Floats,
+    corner_angle: float,
+    join_tolerance: float | None,
+) -> Skeleton:
+    """Join curves and inscribe a polygon; arguments as those of `Domain.from_curves`."""
+    some_points = _check_curves(curves)
+    places = np.concatenate(some_points)
+    extent = float(np.ptp(places, axis=0).max())
+    if join_tolerance is None:
+        last_place = float(np.spacing(np.abs(places).max()))
+        join_tolerance = max(JOINED * extent, JOINED_PLACES * last_place)
+    if not 0 <= join_tolerance < extent:
+        raise DomainError(
+            f"join_tolerance={join_tolerance}: a length from 0 to the extent, {extent:g}, is wanted"
+        )
+    _check_extents(curves, some_points, join_tolerance)
+    if not 0 <= corner_angle <= 180:
+        raise DomainError(f"corner_angle={corner_angle}: degrees from 0 to 180 are wanted")
+    joined = join(curves, tags, min(corner_angle, MESH_TURN), join_tolerance, isolated)
+    isolated = isolated[~are_near(isolated, joined.corners, join_tolerance)]
+    vertices = np.concatenate([joined.corners, isolated])
+    lines, line_curves = _divided(vertices, joined.lines, joined.line_curves)
+    around = Surroundings(
+        np.concatenate([vertices, inside.holes, inside.seeds]),
+        len(vertices),
+        lines,
+        line_curves,
+        tuple(curves),
+    )
+    points = vertices
+    run, u = np.empty(0, np.int32), np.empty((0, 2))
+    segments = lines
+    if joined.runs:
+        first = [np.linspace(0, r.length, FIRST_CHORDS * len(r.parts) + 1) for r in joined.runs]
+        chords = chords_along(joined.runs, first, TURN, around)
+        points, run, u = chords.points, chords.run, chords.u
+        segments = np.concatenate([lines, chords.ends])
+    owners = np.concatenate(
+        [
+            line_curves,
+            [joined.runs[r].curve_at(m) for r, m in zip(run, u.mean(axis=1), strict=True)],
+        ]
+    ).astype(np.int32)
+    n = len(lines)
+    curved = Curved(
+        tuple(curves),
+        joined.runs,
+        read_only(owners),
+        read_only(np.concatenate([np.full(n, -1, np.int32), run])),
+        read_only(np.concatenate([np.zeros((n, 2)), u])),
+        read_only(np.arange(len(points)) < len(vertices)),
+        corner_angle,
+        join_tolerance,
+    )
+    return Skeleton(points, read_only(segments), read_only(tags[owners]), curved)
+
+
+def _check_curves(curves: Sequence[Curve]) -> list[Floats]:
+    """Refuse what are no curves, or none of finite numbers; returns a few points of each."""
+    if not curves:
+        raise DomainError("no curves: give those that bound the domain, from adaptmesh.curves")
+    for i, curve in enumerate(curves):
+        if not isinstance(curve, Curve):
+            raise DomainError(
+                f"curve {i} is a {type(curve).__name__}: make it one of adaptmesh.curves"
+            )
+    each = [_some_points(curve) for curve in curves]
+    if not (np.abs(np.concatenate(each)) <= domain_input.LARGEST).all():
+        for i, places in enumerate(each):
+            domain_input.checked_points(places, f"curve {i}: point", least=0)
+    return each
+
+
+def _check_extents(
+    curves: Sequence[Curve], some_points: list[Floats], join_tolerance: float
+) -> None:
+    """Refuse curves that rounding has eaten, but for those within the tolerance: they vanish."""
+    first = np.cumsum([0, *map(len, some_points[:-1])])
+    places = np.concatenate(some_points)
+    extent = np.maximum.reduceat(places, first) - np.minimum.reduceat(places, first)
+    extent, far = extent.max(axis=1), np.maximum.reduceat(np.abs(places).max(axis=1), first)
+    for i in np.flatnonzero(extent <= IN_PLACES * np.finfo(float).eps * far).tolist():
+        if curves[i].is_closed or length_of(curves[i]) > join_tolerance:
+            raise DomainError(
+                f"{name_of_curve(curves, i)} is {extent[i]:.3g} long or wide, and coordinates of "
+                f"{far[i]:g} are rounded to {np.spacing(far[i]):.1g}: move the origin near it"
+            )
+
+
+def _divided(points: Floats, lines: Ints, owners: Ints) -> tuple[Ints, Ints]:
+    """Straight lines (k, 2) divided where points lie exactly on them, and the owner of each."""
+    import shapely
+
+    tree = shapely.STRtree(shapely.points(points))
+    line, point = tree.query(shapely.linestrings(points[lines]))
+    a, b = lines[line].T
+    on = (_core.orient2d(points[a], points[b], points[point]) == 0) & (point != a) & (point != b)
+    line, point = line[on], point[on]
+    along = ((points[point] - points[lines[line, 0]]) ** 2).sum(axis=1)
+    order = np.lexsort([along, line])
+    stops = np.searchsorted(line[order], np.arange(len(lines) + 1))
+    between = [point[order[i:j]] for i, j in itertools.pairwise(stops)]
+    out = [
+        pair
+        for (a, b), passed in zip(lines.tolist(), between, strict=True)
+        for pair in itertools.pairwise([a, *passed.tolist(), b])
+    ]
+    out_owners = np.repeat(owners, np.diff(stops) + 1)
+    return np.array(out, np.int32).reshape(-1, 2), out_owners.astype(np.int32)
+
+
+def extent_of(curves: Sequence[Curve]) -> float:
+    """The longer side of the box around curves, from a few places on each."""
+    points = np.concatenate([_some_points(curve) for curve in curves])
+    return float(np.ptp(points, axis=0).max())
+
+
+def _some_points(curve: Curve) -> Floats:
+    """Points on a curve, its ends and kinks among them; no others of one that is straight."""
+    inner = STRAIGHT_LOOKS if curve.is_straight else LOOKS
+    return curve.point(np.append(inner, curve.breaks))

@@ -1,0 +1,95 @@
+"""What is wrong with a domain that the core refuses: where, and what to do."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .inputs import OR_REPAIR
+
+if TYPE_CHECKING:
+    from adaptmesh.boundary.discretise import Outline
+
+    from .domain import Domain
+
+
+def fault_text(domain: Domain, kind: str, i: int, j: int, x: float, y: float) -> str:
+    """What is wrong, where, and what to do, from a fault that the core found."""
+    place = f"({x:.17g}, {y:.17g})"
+    if kind in ("crossing_segments", "overlapping_segments"):
+        a, b = segment_text(domain, i), segment_text(domain, j)
+        if kind == "crossing_segments":
+            return f"{a} and {b} cross at {place}: put a point there and divide both, {OR_REPAIR}"
+        return (
+            f"{a} and {b} overlap near {place}: keep one, divided at the points on it, {OR_REPAIR}"
+        )
+    segment = {"open_hole": j, "uncertain_hole": j, "degenerate_segment": i}.get(kind)
+    line = "" if segment is None else line_text(domain, segment)
+    messages = {
+        "all_collinear": "all points lie on one line: there is nothing to mesh",
+        "duplicate_points": f"points {i} and {j} are the same, {place}: keep one of them, "
+        f"{OR_REPAIR}",
+        "open_boundary": "the boundary is not closed: the outside leaks in"
+        + (f" past point {i} {place}, where a boundary ends" if i >= 0 else "")
+        + "; close it, or check `holes`; adaptmesh.repair closes gaps below its tolerance",
+        "open_hole": f"{line} is in a hole, where nothing is meshed, near point "
+        f"{i} {place}: on both sides of it is a hole or the outside; say holes=[] if there are "
+        f"no holes, or give a point in each; or remove it there, {OR_REPAIR}",
+        "uncertain_hole": f"whether what {line} ends at, at point {i} {place}, is "
+        "a hole is uncertain: say holes=[] if it is not, holes='nesting' if it is, or give a point "
+        "in each hole",
+        "hole_outside": f"hole {i} at {place} is not inside the domain: move or remove it",
+        "hole_on_segment": f"hole {i} at {place} lies on a segment: move it into the hole",
+        "region_seed_outside": f"the point of {seed_text(domain, i)} at {place} is not inside the "
+        "domain: move or remove it, or check `holes` (holes=[] if there are none)",
+        "region_seed_on_segment": f"the point of {seed_text(domain, i)} at {place} lies on a "
+        "segment: move it into the region",
+        "two_seeds_one_region": f"{seed_text(domain, i)} and {seed_text(domain, j)} are the same "
+        "part of the domain: remove one, or separate them by segments",
+        "point_outside": f"point {i} at {place} is on no segment and outside the domain, or in a "
+        f"hole: remove it, {OR_REPAIR}",
+        "empty_domain": "nothing is left inside: every part of the domain is a hole",
+        "too_few_points": f"expected at least 3 points, got {i}",
+        "too_many_points": f"{i} points are more than can be numbered with 32 bits: divide the "
+        "domain",
+        "not_finite": f"point {i} at {place} is not finite: remove it or give it coordinates",
+        "segment_out_of_range": f"segment {i} names point {j}, but the points are numbered 0 to "
+        f"{len(domain.points) - 1}",
+        "degenerate_segment": f"{line} begins and ends at the same point, {j} at "
+        f"{place}: remove it, {OR_REPAIR}",
+    }
+    return messages[kind]
+
+
+def too_near_text(
+    domain: Domain, outline: Outline, kind: str, i: int, j: int, x: float, y: float
+) -> str:
+    """What of a valid domain cannot be told apart where its curves are cut, and what to do."""
+    if kind == "duplicate_points":
+        sides = [int((outline.segments == point).any(axis=1).argmax()) for point in (i, j)]
+    else:
+        sides = [i, j]
+    a, b = (segment_text(domain, int(outline.segment_owners[k])) for k in sides)
+    return (
+        f"{a} and {b} come so near each other at ({x:.17g}, {y:.17g}) that vertices on them "
+        "cannot be told apart (coordinates are rounded): move them apart, make them one, or move "
+        "the origin near them"
+    )
+
+
+def segment_text(domain: Domain, i: int) -> str:
+    (x0, y0), (x1, y1) = domain.points[domain.segments[i]].tolist()
+    what = domain.curved.describe(i) if domain.curved.curves else f"segment {i}"
+    return f"{what} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
+
+
+def line_text(domain: Domain, i: int) -> str:
+    """A segment with its name."""
+    tag = int(domain.segment_tags[i])
+    names = [name for name, number in domain.names.items() if number == tag]
+    return segment_text(domain, i) + (f", named {names[0]!r}," if tag and names else "")
+
+
+def seed_text(domain: Domain, i: int) -> str:
+    number = int(domain.seed_regions[i]) if 0 <= i < len(domain.seed_regions) else 0
+    names = [name for name, region in domain.region_names.items() if region == number]
+    return f"region {names[0]!r}" if names else f"region seed {i}"

@@ -1,0 +1,92 @@
+"""Delaunay triangulation of points, exactly."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from adaptmesh import _core
+from adaptmesh.errors import DomainError
+
+__all__ = ["delaunay"]
+
+
+def delaunay(points: ArrayLike) -> NDArray[np.int32]:
+    """Triangulate the convex hull of points so that no circumcircle has a point in it.
+
+    The predicates are exact: the result is a triangulation, and is Delaunay, for any finite
+    coordinates. Of points on one circle any triangulation counts. The same points give the same
+    triangles in the same order.
+
+    Parameters
+    ----------
+    points : (n, 2) array_like of float
+        At least three points, not all on one line.
+
+    Returns
+    -------
+    (m, 3) array of int32
+        The triangles, as numbers of their points, counter-clockwise. A point equal to one with a
+        lower number is in no triangle.
+
+    Raises
+    ------
+    DomainError
+        If the shape is not (n, 2), a coordinate is not finite, there are fewer than three points,
+        or all lie on one line.
+
+    See Also
+    --------
+    adaptmesh.generate : a mesh of a domain, with edges of the lengths asked for.
+
+    Notes
+    -----
+    Incremental insertion along a Hilbert curve with Lawson's flips [1]_ and Shewchuk's approach
+    to exact signs [2]_.
+
+    References
+    ----------
+    .. [1] C. L. Lawson, Software for C1 surface interpolation, in: Mathematical Software III,
+       Academic Press, 1977, 161-194.
+    .. [2] J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric
+       predicates, Discrete & Computational Geometry 18 (1997), 305-363.
+
+    Examples
+    --------
+    >>> from adaptmesh import delaunay
+    >>> delaunay([[0, 0], [1, 0], [0, 1]])
+    array([[0, 1, 2]], dtype=int32)
+    """
+    array = _checked(points)
+    try:
+        triangles, _ = _core.delaunay(array)
+    except _core.Fault as fault:
+        # Everything else was checked above.
+        low, high = array.min(axis=0), array.max(axis=0)
+        raise DomainError(
+            f"all {len(array)} points lie exactly on one line, between ({low[0]:.17g}, "
+            f"{low[1]:.17g}) and ({high[0]:.17g}, {high[1]:.17g}); "
+            "add a point off the line."
+        ) from fault
+    result: NDArray[np.int32] = triangles
+    return result
+
+
+def _checked(points: ArrayLike) -> NDArray[np.float64]:
+    raw = np.asarray(points)
+    if raw.dtype.kind not in "biuf":
+        raise DomainError(f"points must be real numbers, not an array of type {raw.dtype}.")
+    array = np.ascontiguousarray(raw, dtype=np.float64)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise DomainError(f"points must have shape (n, 2), one row each, not {array.shape}.")
+    if len(array) < 3:
+        raise DomainError(f"at least 3 points are needed for a triangle; there are {len(array)}.")
+    bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
+    if len(bad):
+        i = int(bad[0])
+        more = f" (and {len(bad) - 1} more)" if len(bad) > 1 else ""
+        raise DomainError(
+            f"point {i} at ({array[i, 0]}, {array[i, 1]}){more} is not finite; "
+            "remove it or give it coordinates."
+        )
+    return array

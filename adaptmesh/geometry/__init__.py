@@ -1,0 +1,1 @@
+"""Exact questions about points and segments, and distances between them."""

@@ -1,0 +1,250 @@
+"""Scripts opened by Gmsh itself, for all of its language: curves, surfaces and physical groups.
+
+Gmsh works in a process of its own (`gmsh_program`), on a script that reaches no other file
+(`gmsh_script`), with bounds on time and memory.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import warnings
+from collections.abc import Container, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from adaptmesh.curves import Arc, BSpline, Curve, Line
+from adaptmesh.domain.coincident_curves import curves_once
+from adaptmesh.domain.domain import Domain
+from adaptmesh.domain.inputs import Holes, refuse_holes
+from adaptmesh.domain.inscribed_polygon import extent_of
+from adaptmesh.domain.surfaces import joined_lines, seeds_of
+from adaptmesh.errors import FormatError, FormatWarning
+from adaptmesh.io.domains.drawings.drawing import JOINED, affine_arc
+
+from .gmsh_script import MENTIONED, SafeScript, safe_script
+from .groups import names_of_groups
+
+Floats = NDArray[np.float64]
+
+SECONDS = 60
+"""Of processor time that a script may take in Gmsh."""
+
+MEMORY = 4 << 30
+"""Bytes of address space that Gmsh may take."""
+
+SAME_RADIUS = 1e-6
+"""The ends of an arc are on its circle, to this share of its size, or a warning says so."""
+
+FLAT = 1e-9
+"""Share of the extent by which heights of a plane domain may differ."""
+
+_SAMPLES = np.linspace(0, 1, 33)  # on each curve, for polygons in which seeds are found
+
+
+def is_installed() -> bool:
+    """Whether the package gmsh can be imported."""
+    return importlib.util.find_spec("gmsh") is not None
+
+
+def read_by_gmsh(path: Path, holes: Holes = None) -> Domain:
+    """Read a domain from a script, as Gmsh understands it; a `FormatError` says what is wrong."""
+    script = safe_script(path)
+    said = _opened(path, script)
+    left_out = {word: line for word, line in script.left_out.items() if word in MENTIONED}
+    if left_out:
+        words = ", ".join(f"{word} (line {line})" for word, line in left_out.items())
+        warnings.warn(
+            f"{path}: passed over {words}: what says nothing about the domain",
+            FormatWarning,
+            stacklevel=2,
+        )
+    return _Model.of(path, said).domain(holes)
+
+
+def _opened(path: Path, script: SafeScript) -> dict[str, Any]:
+    """What the program says about a script."""
+    program = Path(__file__).with_name("gmsh_program.py").read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "script.geo"
+        file.write_text(script.text, encoding="utf-8", newline="\n")
+        try:
+            done = subprocess.run(
+                [sys.executable, "-c", program, str(file), str(SECONDS), str(MEMORY)],
+                cwd=folder,
+                env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                timeout=2 * SECONDS,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            raise FormatError(f"{path}: Gmsh has not read it after {2 * SECONDS} s") from None
+        except OSError as error:
+            raise FormatError(f"{path}: Gmsh cannot be started: {error}") from None
+    try:
+        said: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    except (ValueError, IndexError):
+        raise FormatError(
+            f"{path}: Gmsh ended without a result (exit code {done.returncode}): the script may "
+            f"take more than {SECONDS} s or {MEMORY >> 30} GB, or be more than Gmsh bears"
+        ) from None
+    if said["error"]:
+        raise FormatError(f"{path}: {said['error'].replace(str(file), path.name)}")
+    return said
+
+
+@dataclass
+class _Model:
+    """What Gmsh has made of a script, by tag."""
+
+    path: Path
+    points: dict[int, Floats]
+    curves: dict[int, Curve]
+    surfaces: dict[int, dict[str, list[int]]]
+    groups: list[tuple[int, int, str, list[int]]]
+
+    @classmethod
+    def of(cls, path: Path, said: Mapping[str, Any]) -> _Model:
+        if said["volumes"]:
+            raise FormatError(
+                f"{path}: it has {said['volumes']} volumes; a domain is plane: leave out what "
+                "makes them (extrusions of surfaces, boxes, ...)"
+            )
+        _check_flat(path, said)
+        model = cls(
+            path,
+            {int(tag): np.array(p[:2]) for tag, p in said["points"].items()},
+            {int(tag): _curve(path, int(tag), c) for tag, c in said["curves"].items()},
+            {int(tag): surface for tag, surface in said["surfaces"].items()},
+            [(dim, tag, name or str(tag), entities) for dim, tag, name, entities in said["groups"]],
+        )
+        off = [tag for tag, c in said["curves"].items() if c.get("off", 0) > SAME_RADIUS]
+        if off:
+            warnings.warn(
+                f"{path}: the ends of circles {', '.join(off)} are not equally far from their "
+                "centres: arcs through both ends are taken",
+                FormatWarning,
+                stacklevel=4,
+            )
+        if said["periodic"]:
+            listed = ", ".join(f"{a} and {b}" for a, b in said["periodic"])
+            warnings.warn(
+                f"{path}: curves {listed} are periodic there; say so of the domain with "
+                "Domain.with_periodic",
+                FormatWarning,
+                stacklevel=4,
+            )
+        return model
+
+    def domain(self, holes: Holes = None) -> Domain:
+        if not self.curves:
+            raise FormatError(f"{self.path}: it has no curves: there is nothing to mesh")
+        inside = {t for s in self.surfaces.values() for t in s["curves_inside"]}
+        bounding = {t for s in self.surfaces.values() for t in s["curves"]}
+        used = sorted(inside | bounding) if self.surfaces else sorted(self.curves)
+        found = [self.curves[t] for t in used]
+        kept, number = curves_once(found, JOINED * extent_of(found))
+        number_of = dict(zip(used, number, strict=True))
+        curves = [found[k] for k in kept]
+        names = self._names(number_of)
+        samples = [c.point([0, 1] if c.is_straight else _SAMPLES) for c in curves]
+        lines = joined_lines(samples, JOINED * extent_of(curves))
+        faces = {
+            tag: self._face(tag, [lines[k] for k in sorted({number_of[t] for t in s["curves"]})])
+            for tag, s in self.surfaces.items()
+        }
+        of_surfaces = [(name, members) for dim, _, name, members in self.groups if dim == 2]
+        groups = names_of_groups(self.path, of_surfaces, "surfaces")
+        regions: dict[str, Any] = {}
+        if faces:
+            refuse_holes(holes, "surfaces")
+            holes, regions = seeds_of(faces, groups)
+        points = {t for s in self.surfaces.values() for t in s["points_inside"]}
+        return Domain.from_curves(
+            curves,
+            names=names,
+            tags=self._tags(1, names),
+            holes=holes,
+            regions=regions,
+            region_tags=self._tags(2, regions),
+            points=[self.points[t] for t in sorted(points)],
+            join_tolerance=JOINED * extent_of(curves),
+        )
+
+    def _names(self, number_of: Mapping[int, int]) -> dict[str, list[int]]:
+        groups = [
+            (name, [number_of[m] for m in members if m in number_of])
+            for dim, _, name, members in self.groups
+            if dim == 1
+        ]
+        return names_of_groups(self.path, groups, "curves")
+
+    def _tags(self, dimension: int, names: Container[str]) -> dict[str, int]:
+        return {
+            name: tag for dim, tag, name, _ in self.groups if dim == dimension and name in names
+        }
+
+    def _face(self, tag: int, lines: list[Floats]) -> Any:
+        """A surface as a polygon of samples: what an odd number of its boundaries encloses."""
+        import shapely
+
+        if not lines:
+            raise FormatError(f"{self.path}: surface {tag} has no boundary")
+        face = shapely.build_area(shapely.MultiLineString(lines))
+        if face.is_empty:
+            raise FormatError(f"{self.path}: the boundary of surface {tag} is not closed")
+        return face
+
+
+def _check_flat(path: Path, said: Mapping[str, Any]) -> None:
+    """Refuse what does not lie in one plane z = constant; loose points do not matter."""
+    surfaces = list(said["surfaces"].values())
+    used = {t for s in surfaces for kind in ("curves", "curves_inside") for t in s[kind]}
+    rows = [[t, said["points"][str(t)]] for s in surfaces for t in s["points_inside"]]
+    for tag, curve in said["curves"].items():
+        places = curve.get("points") or curve.get("control") or []
+        if int(tag) in used or not surfaces:
+            rows += [[f"of curve {tag}", p] for p in places]
+    if not rows:
+        return
+    xyz = np.array([p for _, p in rows])
+    extent = float(np.ptp(xyz, axis=0).max())
+    off = np.abs(xyz[:, 2] - xyz[0, 2])
+    if off.max() > FLAT * extent:
+        what, (x, y, z) = rows[int(off.argmax())]
+        raise FormatError(
+            f"{path}: it is not plane: point {what} is ({x:g}, {y:g}, {z:g}); all have to lie at "
+            "one height z"
+        )
+
+
+def _curve(path: Path, tag: int, said: Mapping[str, Any]) -> Curve:
+    kind = said["kind"]
+    if kind == "line":
+        a, b = np.array(said["points"])[:, :2]
+        return Line(a, b)
+    if kind == "ellipse":
+        return _arc(said)
+    if kind == "cubics":
+        knots = np.concatenate([[0, 0], np.repeat(said["knots"], 2), [1, 1]])
+        return BSpline(np.array(said["control"])[:, :2], 3, knots)
+    raise FormatError(f"{path}: curve {tag} is a {kind}, without geometry; it cannot be read")
+
+
+def _arc(said: Mapping[str, Any]) -> Curve:
+    """An arc of a circle through three of its points, one of an ellipse by conjugate radii."""
+    first, second = (np.array(said[k])[:2] for k in ("first", "second"))
+    a, b = np.hypot(*first), np.hypot(*second)
+    is_circle = abs(a - b) <= 1e-12 * a and abs(first @ second) <= 1e-12 * a * b
+    if is_circle and said["turn"] < 2 * np.pi:
+        return Arc.through(*np.array(said["points"])[:, :2])
+    return affine_arc(np.array(said["centre"])[:2], first, second, 0.0, said["turn"])

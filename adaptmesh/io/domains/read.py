@@ -1,0 +1,150 @@
+"""Domains from files: polygons, outlines, drawings, scripts, and the domains of meshes."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+from adaptmesh.domain.domain import Domain
+from adaptmesh.domain.inputs import Holes, refuse_holes
+from adaptmesh.domain.outline import Outline, Shape
+from adaptmesh.domain.polygons import domain_of_shapes
+from adaptmesh.errors import DomainError, FormatError, FormatWarning
+from adaptmesh.files.located import located, only_our_errors
+
+from .bamg import read_bamg_geometry
+from .drawings import Drawing, read_dxf, read_svg
+from .geo import read_geo
+from .geojson import read_geojson
+from .poly import read_poly
+from .shapefile import read_shapefile
+from .wkt import read_wkt
+
+
+def read_domain(path: str | os.PathLike[str], *, holes: Holes = None) -> Domain:
+    """Read what to mesh from a file.
+
+    ================== ==========================================================================
+    suffix             what becomes of it
+    ================== ==========================================================================
+    .geojson .json     Each Polygon or MultiPolygon is a region, named by the property ``name`` of
+                       its feature; polygons may share borders, which become interfaces, named
+                       ``"a|b"`` after the regions beside them; other borders of a region bear its
+                       name. Coordinates are taken as they are, in the plane: project longitudes
+                       and latitudes first.
+    .wkt               As GeoJSON, without names.
+    .shp               A shapefile (needs pyshp): as GeoJSON, the attribute ``name`` being in the
+                       ``.dbf`` beside it.
+    .svg               Paths and shapes (needs svgelements): lines, arcs and Bézier curves, with the
+                       id of their shape for a name; y turned over.
+    .dxf               Lines, arcs, ellipses, polylines and splines (needs ezdxf), with their layer
+                       for a name.
+    .geo               A Gmsh script: points, curves, plane surfaces, physical groups.
+    .g .gmesh          A geometry of BAMG: straight and curved edges, their references as tags, and
+                       subdomains as regions.
+    .poly              Triangle's format, with holes; boundary markers other than 0 become names
+                       of edges, and the attributes of region seeds become names of regions.
+    anything else      A mesh that `adaptmesh.read` can read: its domain. Of files with edges and
+                       no triangles, such as geometries of JIGSAW, what the edges enclose.
+    ================== ==========================================================================
+
+    Parameters
+    ----------
+    path : str or path
+        The file.
+    holes : sequence of (x, y), or "nesting", optional
+        As in `Domain`, for drawings of lines and .geo scripts without surfaces: ``[]`` if there are
+        no holes, whatever lies in what. Other files say themselves what is inside.
+
+    Returns
+    -------
+    Domain
+
+    Raises
+    ------
+    FormatError
+        If the file is missing, truncated, or not what its suffix says.
+    DomainError
+        If it holds no polygon, something else than polygons, or anything that `repair` would have
+        to mend; the message names the feature, the place and the remedy.
+
+    See Also
+    --------
+    repair : takes the path of a file that is not clean.
+    """
+    raw = read_raw(path, holes)
+    with only_our_errors(path), located(path, DomainError):
+        if isinstance(raw, Drawing):
+            return raw.domain(holes)
+        if Path(path).suffix.lower() != ".geo":
+            refuse_holes(holes, "a mesh, polygons or points in holes")
+        if isinstance(raw, Domain):
+            return raw
+        return (
+            domain_of_shapes(_without_empty(raw, path)) if isinstance(raw, list) else raw.domain()
+        )
+
+
+def _without_empty(shapes: list[Shape], path: str | os.PathLike[str]) -> list[Shape]:
+    """The shapes that are not empty; features of a file may have no geometry, or an empty one."""
+    kept = [shape for shape in shapes if not shape.is_empty]
+    if not kept or len(kept) == len(shapes):
+        return shapes
+    left_out = [shape.label for shape in shapes if shape.is_empty]
+    more = f" and {len(left_out) - 3} more" if len(left_out) > 3 else ""
+    warnings.warn(
+        f"{path}: {', '.join(left_out[:3])}{more}: without geometry, passed over",
+        FormatWarning,
+        stacklevel=4,
+    )
+    return kept
+
+
+def read_raw(
+    path: str | os.PathLike[str], holes: Holes = None
+) -> Domain | Outline | Drawing | list[Shape]:
+    """What is in a file that `read_domain` can read, before it is checked.
+
+    A script becomes a domain at once, with these holes.
+    """
+    path = Path(path)
+    if path.suffix.lower() == ".geo":
+        with only_our_errors(path), located(path, DomainError):
+            return read_geo(path, holes)
+    reader = _READERS.get(path.suffix.lower(), _domain_of_mesh_file)
+    with only_our_errors(path), located(path, DomainError):
+        return reader(path)
+
+
+def _domain_of_mesh_file(path: Path) -> Domain | Outline:
+    from adaptmesh.io import FORMATS, read_mesh_or_outline
+
+    if path.suffix.lower() not in FORMATS:
+        raise FormatError(
+            f"the extension {path.suffix!r} is not known; known are those of outlines, "
+            f"{', '.join(OUTLINE_SUFFIXES)}, and of meshes, {', '.join(FORMATS)}"
+        )
+
+    found = read_mesh_or_outline(path)
+    if isinstance(found, Outline):
+        return found
+    return Domain.of_mesh(found) if found.domain is None else found.domain
+
+
+_READERS: dict[str, Callable[[Path], Domain | Outline | Drawing | list[Shape]]] = {
+    ".geojson": read_geojson,
+    ".json": read_geojson,
+    ".wkt": read_wkt,
+    ".shp": read_shapefile,
+    ".poly": read_poly,
+    ".svg": read_svg,
+    ".dxf": read_dxf,
+    ".geo": read_geo,
+    ".g": read_bamg_geometry,
+    ".gmesh": read_bamg_geometry,
+}
+
+OUTLINE_SUFFIXES = tuple(_READERS)
+"""Of files that hold a domain but no mesh."""

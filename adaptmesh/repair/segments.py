@@ -1,0 +1,215 @@
+"""Dirty segments, with seeds of holes and regions and with names, made into a domain."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from adaptmesh.arrangement import (
+    Noded,
+    Repair,
+    Repairs,
+    Words,
+    at,
+    find_faces,
+    node,
+    used_tolerance,
+)
+from adaptmesh.arrangement.numbering import unique_edges, used_points
+from adaptmesh.domain.domain import Domain
+from adaptmesh.domain.inputs import (
+    Inside,
+    checked_names,
+    checked_pairs,
+    checked_points,
+    labelled,
+    name_of_number,
+)
+from adaptmesh.domain.naming import split_names
+from adaptmesh.domain.outline import Outline
+from adaptmesh.errors import DomainError
+
+from .inside_lines import Lines
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+
+def repaired_domain_of_segments(
+    outline: Outline, tolerance: float | None
+) -> tuple[Domain, Repairs]:
+    """A domain of points and segments, and what had to be done for it; see `adaptmesh.repair`."""
+    points = checked_points(outline.points, "point")
+    segments = checked_pairs(outline.segments, len(points)).astype(np.int64)
+    given, selectors = split_names(outline.names)
+    names, tags32 = checked_names(given, len(segments), given=outline.tags)
+    tags = tags32.astype(np.int64)
+    inside = Inside.checked(outline.holes, outline.regions, outline.region_tags)
+    log = _segments_without_length(points, segments)
+    tolerance = used_tolerance(points, tolerance)
+    words = Words(lambda v: f"point {v}", lambda i: f"segment {i}")
+    noded = node(points, segments, tolerance, words, log)
+    drift = noded.drift(points, segments)
+
+    edges, edge_of_piece, _ = unique_edges(noded.pieces)
+    edge_tags = _tags(edge_of_piece, tags[noded.segment], len(edges))
+    log += _overlaps(noded, edges, edge_of_piece, edge_tags, tags, names)
+    if not len(edges):
+        raise DomainError("no segment is longer than the tolerance: there is nothing to mesh")
+    used, renumbered = used_points(edges)
+    lines = Lines(find_faces(noded.points[used], renumbered), inside)
+    spikes = _spikes(noded, edges, edge_of_piece, lines, log)
+    kept = ~(spikes | _in_holes(noded, edges, lines, spikes, log))
+    if np.count_nonzero(kept) < 3:
+        raise DomainError(
+            f"there is nothing to mesh: {np.count_nonzero(kept)} segments are left, which enclose "
+            "nothing" + (f"; the last of what was done: {log[-1]}" if log else "")
+        )
+    lone = _lone_points_inside(noded, edges[kept], lines, log)
+    log += _lost_names(names, tags, edge_tags[kept], points, segments)
+    if log:
+        _check_seeds(inside, noded.points[edges], max(tolerance, drift))
+    domain = _domain(noded, edges[kept], edge_tags[kept], lone, outline, names)
+    domain = domain.with_names(selectors) if selectors else domain
+    return domain, Repairs(tuple(log), tolerance, drift)
+
+
+def _segments_without_length(points: Floats, segments: Ints) -> list[Repair]:
+    ends = points[segments]
+    log = []
+    for i in np.flatnonzero((ends[:, 0] == ends[:, 1]).all(axis=1)).tolist():
+        x, y = ends[i, 0].tolist()
+        what = f"segment {i} starts where it ends; removed"
+        log.append(Repair("segment without length", (x, y), what))
+    return log
+
+
+def _tags(edge: Ints, tag: Ints, count: int) -> Ints:
+    """For each edge the tag of the first of its segments that has one."""
+    out = np.zeros(count, np.int64)
+    named = np.flatnonzero(tag)[::-1]
+    out[edge[named]] = tag[named]  # of those with the same edge the last one written stays
+    return out
+
+
+def _overlaps(
+    noded: Noded,
+    edges: Ints,
+    edge: Ints,
+    edge_tags: Ints,
+    tags: Ints,
+    names: Mapping[str, int],
+) -> list[Repair]:
+    """Each pair of segments that have edges in common."""
+    order = np.lexsort((noded.segment, edge))
+    edge, segment = edge[order], noded.segment[order]
+    again = np.append(False, edge[1:] == edge[:-1])
+    owner = segment[np.maximum.accumulate(np.where(again, 0, np.arange(len(edge))))]
+    name_of = name_of_number(names, tags)
+    log = []
+    pairs = np.unique(np.stack([owner, segment], axis=1)[again], axis=0)
+    for i, j in pairs.tolist():
+        common = edge[again & (owner == i) & (segment == j)]
+        p, q = noded.points[edges[common]].transpose(1, 0, 2)
+        length = float(np.hypot(*(q - p).T).sum())
+        x, y = (0.5 * (p[0] + q[0])).tolist()
+        what = f"segments {i} and {j} overlap" if i != j else f"segment {i} overlaps itself"
+        what += f" over a length of {length:.3g}; one kept"
+        tag = int(edge_tags[common[0]])
+        if tags[j] not in (0, tag) or tags[i] not in (0, tag):
+            loser = tags[j] if tags[j] not in (0, tag) else tags[i]
+            what += f", named {name_of[tag]!r} and not {name_of[int(loser)]!r}"
+        log.append(Repair("overlapping segments", (x, y), what))
+    return log
+
+
+def _spikes(noded: Noded, edges: Ints, edge: Ints, lines: Lines, log: list[Repair]) -> Bools:
+    """Edges that were drawn more than once, and stick out of the domain."""
+    doubled = np.bincount(edge, minlength=len(edges)) > 1
+    spikes: Bools = doubled & lines.is_loose
+    for i in np.flatnonzero(spikes).tolist():
+        place, length = _middle_and_length(noded, edges[i])
+        what = f"a line drawn there and back sticks out of the domain by {length:.3g}; removed"
+        log.append(Repair("spike", place, what))
+    return spikes
+
+
+def _in_holes(noded: Noded, edges: Ints, lines: Lines, spikes: Bools, log: list[Repair]) -> Bools:
+    """Edges in holes, or between two, that are no spikes."""
+    lost = lines.is_in_hole & ~spikes
+    for i in np.flatnonzero(lost).tolist():
+        place, length = _middle_and_length(noded, edges[i])
+        what = f"a line of length {length:.3g} is in a hole, where nothing is meshed; removed"
+        log.append(Repair("line in a hole", place, what))
+    return lost
+
+
+def _middle_and_length(noded: Noded, edge: Ints) -> tuple[tuple[float, float], float]:
+    p, q = noded.points[edge]
+    x, y = (0.5 * (p + q)).tolist()
+    return (x, y), float(np.hypot(*(q - p)))
+
+
+def _lone_points_inside(noded: Noded, edges: Ints, lines: Lines, log: list[Repair]) -> Ints:
+    """The points of no segment that lie in the domain, or on an edge of it."""
+    lone = np.setdiff1d(noded.lone, edges)
+    is_inside = lines.contains(noded.points[lone])
+    for x, y in noded.points[lone[~is_inside]].tolist():
+        what = "a point of no segment is outside, or in a hole; removed"
+        log.append(Repair("point outside", (x, y), what))
+    return lone[is_inside]
+
+
+def _lost_names(
+    names: Mapping[str, int], tags: Ints, left: Ints, points: Floats, segments: Ints
+) -> list[Repair]:
+    name_of = name_of_number(names, tags)
+    log = []
+    for tag in np.setdiff1d(tags[tags != 0], left).tolist():
+        first = np.flatnonzero(tags == tag)[0]
+        x, y = points[segments[first, 0]].tolist()
+        log.append(Repair("name lost", (x, y), f"no segment named {name_of[tag]!r} is left"))
+    return log
+
+
+def _check_seeds(inside: Inside, segments: Floats, reach: float) -> None:
+    """Refuse seeds that a segment may have been moved over."""
+    import shapely
+
+    name_of = name_of_number(inside.region_names, inside.seed_regions)
+    labels = [f"the point of region {name_of[r]!r}" for r in inside.seed_regions.tolist()]
+    labels += [f"hole {i}" for i in range(len(inside.holes))]
+    if not labels:
+        return
+    places = np.concatenate([inside.seeds, inside.holes])
+    tree = shapely.STRtree(shapely.linestrings(segments))
+    near = tree.query(shapely.points(places), predicate="dwithin", distance=reach)[0]
+    if len(near):
+        k = int(near.min())
+        raise DomainError(
+            f"{labels[k]} at {at(*places[k])} is within {reach:.3g} of a segment, so that the "
+            "repair may have put it on the other side: move it away from segments"
+        )
+
+
+def _domain(
+    noded: Noded,
+    edges: Ints,
+    edge_tags: Ints,
+    lone: Ints,
+    outline: Outline,
+    names: Mapping[str, int],
+) -> Domain:
+    used = np.union1d(edges, lone)
+    return Domain(
+        noded.points[used],
+        np.searchsorted(used, edges),
+        holes=outline.holes,
+        regions=outline.regions,
+        names=labelled(edge_tags),
+        tags=names,
+        region_tags=outline.region_tags,
+    )

@@ -1,0 +1,92 @@
+"""Closed loops of edges that touch no other line, and what is in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from adaptmesh.arrangement import Faces
+from adaptmesh.arrangement.winding import walk
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Connected edges, with all edges and faces within them.
+
+    Attributes
+    ----------
+    edges, faces : arrays
+        Their numbers.
+    place : (float, float)
+        A point of it.
+    area, size : float
+        The area of the faces, and the diagonal of the box around it.
+    """
+
+    edges: Ints
+    faces: Ints
+    place: tuple[float, float]
+    area: float
+    size: float
+
+
+def small_loops(
+    points: Floats, tensors: Floats, edges: Ints, faces: Faces, below: float
+) -> Iterator[Loop]:
+    """The outermost loops that are smaller than a length in the metric.
+
+    The size of a loop is twice the largest distance of its points from their mean, in the metric at
+    each point.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    n = len(points)
+    graph = coo_array((np.ones(len(edges)), edges.T), shape=(n, n))
+    _, of_point = connected_components(graph, directed=False)
+    of_edge = of_point[edges[:, 0]]
+    order, before, through = walk(faces)
+    parent_face = np.zeros(faces.count, np.int64)
+    parent_face[order] = before
+    entered = np.full(faces.count, -1)
+    entered[order] = of_edge[through]  # the component that each face is within
+
+    # The first face that is reached through a component is reached from the face around it.
+    around: dict[int, int] = {}
+    for face in order.tolist():
+        around.setdefault(int(entered[face]), int(entered[parent_face[face]]))
+    small: set[int] = set()
+    for component in around:  # from the outside inwards
+        mine = np.flatnonzero(of_point == component)
+        if around[component] in small or _size(points[mine], tensors[mine]) < below:
+            small.add(component)
+    for component in sorted(small):
+        if around[component] in small:
+            continue
+        within = {component}
+        for inner, outer in around.items():
+            if outer in within:
+                within.add(inner)
+        ids = list(within)
+        mine = points[of_point == component]
+        inside = np.flatnonzero(np.isin(entered, ids))
+        x, y = mine.mean(axis=0).tolist()
+        yield Loop(
+            np.flatnonzero(np.isin(of_edge, ids)),
+            inside,
+            (x, y),
+            float(faces.areas[inside].sum()),
+            float(np.hypot(*np.ptp(mine, axis=0))),
+        )
+
+
+def _size(points: Floats, tensors: Floats) -> float:
+    x, y = (points - points.mean(axis=0)).T
+    m11, m12, m22 = tensors.T
+    return float(2 * np.sqrt((m11 * x * x + 2 * m12 * x * y + m22 * y * y).max()))

@@ -1,0 +1,1 @@
+"""Fields carried from one mesh to another."""

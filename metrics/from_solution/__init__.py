@@ -1,0 +1,1 @@
+"""From fields on a mesh to a metric: recovery, Hessian, norm, goal."""

@@ -1,0 +1,1 @@
+"""Lengths, areas, qualities and complexity in a metric."""

@@ -1,0 +1,85 @@
+"""Right meshes of every kind are valid: by `validate`, and by the exact oracle where it can judge.
+
+More of them: ``ADAPTMESH_RIGHT_MESHES=2000 pytest`` with this file.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+
+import numpy as np
+import pytest
+from reference.exact_domain import faults_against_domain
+from reference.exact_mesh import faults_of_mesh
+from reference.planted import FAULTS
+from reference.random_meshes import right_mesh
+from reference.transforms import TRANSFORMS
+
+import adaptmesh as am
+
+COUNT = int(os.environ.get("ADAPTMESH_RIGHT_MESHES", "40"))
+LARGEST_EXACT = 100  # triangles: the oracle looks at every pair
+
+
+def test_right_meshes_are_valid_and_the_exact_oracle_agrees():
+    seen = 0
+    for number in range(COUNT):
+        try:
+            mesh, what = right_mesh(number)
+        except am.AdaptmeshError:
+            continue  # the domain was refused
+        validity = mesh.validate()
+        assert validity.ok, f"{what}\n{validity}"
+        seen += 1
+        if len(mesh.triangles) <= LARGEST_EXACT:
+            assert faults_of_mesh(mesh) == [], what
+            if not mesh.domain.curved.runs:
+                assert faults_against_domain(mesh, mesh.domain) == [], what
+    assert seen >= 0.9 * COUNT
+
+
+@pytest.mark.parametrize("transform", TRANSFORMS[::2], ids=str)
+def test_the_oracle_finds_what_validate_finds(transform):
+    points = transform([(0, 0), (2, 0), (2, 1), (0, 1), (1, 0), (1, 1)])
+    domain = am.Domain(
+        points,
+        [(0, 4), (4, 1), (1, 2), (2, 5), (5, 3), (3, 0), (4, 5)],
+        regions={"a": transform([0.5, 0.5]), "b": transform([1.5, 0.5])},
+        names={"left": [5], "between": [6]},
+    )
+    tensor = transform.metric([[1 / 0.3**2, 0.0, 1 / 0.3**2]])
+    mesh = am.generate(domain, lambda x: np.repeat(tensor, len(x), axis=0))
+    assert mesh.validate().ok
+    # what an oracle without curves, periodic sides, frozen segments and histories can see
+    unseen = {"coordinate not a number", "coordinate infinite", "no triangles", "vertex kept twice"}
+    for name, plant in FAULTS.items():
+        planted = None if name in unseen else plant(mesh)
+        if planted is None or not planted[0].validate()["indices in range"].ok:
+            continue
+        broken = planted[0]
+        assert not broken.validate().ok, name
+        assert faults_of_mesh(broken) or faults_against_domain(broken, broken.domain), name
+
+
+def star(arms):
+    """Arms that all but meet in the middle."""
+    angle = np.pi * np.arange(2 * arms) / arms
+    radius = np.where(np.arange(2 * arms) % 2, 1.0, 0.02)
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
+
+
+def test_a_star_takes_n_log_n():
+    """Long sides beside each other, each in the bounding boxes of a thousand others."""
+
+    def seconds(arms):
+        mesh = am.generate(am.Domain.polygon(star(arms)), 10.0)
+        times = []
+        for _ in range(3):
+            start = time.process_time()
+            assert mesh.validate().ok
+            times.append(time.process_time() - start)
+        return min(times)
+
+    few, many = seconds(1000), seconds(4000)
+    assert many < 10 * few + 0.1  # with all pairs of boxes it was 16 times as much
