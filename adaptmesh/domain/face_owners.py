@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from adaptmesh.arrangement import NOWHERE, Faces, Repair
 from adaptmesh.arrangement.winding import Passes, winding_changes
-from adaptmesh.hole_depths import hole_depths
 
+from .hole_depths import hole_depths
 from .outline import Shape
 from .rings import Ring
 

@@ -209,7 +209,7 @@ class Mesh(Value):
 
     def validate(self, *, tolerance: float | None = None) -> Validity:
         """Check every invariant of a mesh by name; see `adaptmesh.validate`."""
-        from .validate import validate
+        from .validate.validate import validate
 
         return validate(self, tolerance=tolerance)
 

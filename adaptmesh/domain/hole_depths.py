@@ -16,10 +16,10 @@ from collections import defaultdict
 import numpy as np
 from numpy.typing import NDArray
 
+from adaptmesh.arrangement import Faces
 from adaptmesh.arrangement.winding import Passes, winding_changes
-from adaptmesh.domain.rings import Ring
 
-from .arrangement import Faces
+from .rings import Ring
 
 Ints = NDArray[np.int64]
 
