@@ -19,12 +19,8 @@ from .errors import (
     DomainError,
     FormatError,
     FormatWarning,
-    LoopError,
-    LoopInterrupted,
     MetricError,
     TransferError,
-    TransientError,
-    TransientInterrupted,
 )
 from .generate.delaunay import delaunay
 from .generate.generate import generate
@@ -32,6 +28,7 @@ from .generate.prediction import predict
 from .io import read, read_fields, read_sol, write, write_sol
 from .io.domains.read import read_domain
 from .loop.adapt_loop import adapt_loop
+from .loop.errors import LoopError, LoopInterrupted, TransientError, TransientInterrupted
 from .loop.history import History, Iteration
 from .loop.solution import Solution
 from .loop.stopping import Budget

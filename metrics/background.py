@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core, tensor
-from .checks import Floats, Ints, as_numbers, as_points, as_triangles
+from .checks import as_numbers, as_points, as_triangles
 from .control import ControlSpace
 from .errors import MetricError
 from .gradation import graded
+from .types import Floats, Ints
 
 __all__ = ["Background"]
 

@@ -6,11 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import MetricError
+from .types import Floats, Ints
 
 __all__ = ["Floats", "Ints", "as_points", "as_triangles"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 
 def as_points(points: ArrayLike) -> Floats:

@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import tensor
-from .checks import Floats, as_points
+from .checks import as_points
 from .errors import AdaptmeshError, MetricError
+from .types import Floats
 
 __all__ = ["ControlSpace", "Metric", "Uniform", "as_control_space"]
 

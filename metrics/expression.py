@@ -10,18 +10,17 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable
 from functools import reduce
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from .checks import Floats
 from .control import ControlSpace
 from .errors import MetricError
+from .types import Array, Floats
 
 __all__ = ["Expression"]
 
-Array = NDArray[Any]
 Evaluator = Callable[[Floats, Floats], Array]
 
 _MAX_LENGTH = 10_000  # characters

@@ -16,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .background import Background
-from .checks import Floats, Ints, as_points, as_triangles
+from .checks import as_points, as_triangles
 from .errors import AdaptmeshError, MetricError
 from .text import text_of
+from .types import Floats, Ints
 
 __all__ = ["read"]
 

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core, tensor
-from .checks import Floats, as_points, as_triangles
+from .checks import as_points, as_triangles
 from .errors import MetricError
+from .types import Floats
 
 __all__ = ["LAWS", "graded"]
 

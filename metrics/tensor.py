@@ -24,8 +24,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .checks import Floats, as_numbers
+from .checks import as_numbers
 from .errors import MetricError
+from .types import Floats
 
 __all__ = [
     "det",
@@ -128,8 +129,7 @@ def sizes(tensors: ArrayLike) -> Floats:
     array([[0.1, 0.5]])
     """
     values, _ = _core.spectra(pack(tensors))
-    out: Floats = 1 / np.sqrt(values[:, ::-1])
-    return out
+    return 1 / np.sqrt(values[:, ::-1])
 
 
 def det(tensors: ArrayLike) -> Floats:

@@ -18,9 +18,8 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import FIXED, FREE, Mesher
 from adaptmesh.boundary.edge_lengths import measure_fresh_edges
 from adaptmesh.boundary.vertex_limit import Budget, Progress
 from adaptmesh.domain.domain import Domain
@@ -41,13 +40,11 @@ from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.validate.covering import covered_once, simple_border
 from adaptmesh.mesh.validate.local import positive_triangles
 from adaptmesh.mesh.validate.subject import Subject
+from adaptmesh.types import Ints
 from metrics import ControlSpace
 
 from .recut_boundary import had_better_be_anew, recut
 from .select_zone import Fit, Misfits, find_misfits
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -105,7 +102,7 @@ def edited(
         removable = mesher.hold_all_but(misfits.zone)
         if not removable and not misfits.has_long_edges:
             break
-        if turn == 0 and removable > options.most_removed * np.sum(held == _core.FREE):
+        if turn == 0 and removable > options.most_removed * np.sum(held == FREE):
             return None
         mesher.remove_free(options.removal_rounds)
         mesher.swap()
@@ -122,7 +119,7 @@ def edited(
     return Edited(new, share)
 
 
-def measured_misfits(mesher: _core.Mesher, samples: Samples, fit: Fit) -> Misfits:
+def measured_misfits(mesher: Mesher, samples: Samples, fit: Fit) -> Misfits:
     """Measure what has changed, and find what does not fit."""
     measure_fresh_edges(mesher, samples, uncut_below=np.inf)
     return find_misfits(mesher, samples, fit)
@@ -139,7 +136,7 @@ def _is_plane(mesh: Mesh) -> bool:
     return not any(look(subject).broken for look in looks)
 
 
-def fill(mesher: _core.Mesher, samples: Samples, budget: Budget, report: Progress) -> None:
+def fill(mesher: Mesher, samples: Samples, budget: Budget, report: Progress) -> None:
     """As `generate` does it, but all that is held stays where it is."""
     place_ahead_of_front(mesher, samples, FrontPlacement(), budget, report)
     place_along_edges(mesher, samples, EdgePlacement(), budget, report)
@@ -156,16 +153,16 @@ def within(report: Progress, start: float, share: float) -> Progress:
 
 def holders(mesh: Mesh, lines: Lines, chains: Chains) -> Ints:
     """What holds each vertex, (n,): nothing, its segment, or that it is a corner of the domain."""
-    held = np.full(len(mesh.points), _core.FREE, np.int32)
+    held = np.full(len(mesh.points), FREE, np.int32)
     held[chains.vertices] = lines.segments[chains.lines]
-    held[vertices_at(mesh, lines.corners)] = _core.FIXED
+    held[vertices_at(mesh, lines.corners)] = FIXED
     return held
 
 
-def load(mesh: Mesh, domain: Domain, held: Ints, metric: ControlSpace) -> _core.Mesher:
+def load(mesh: Mesh, domain: Domain, held: Ints, metric: ControlSpace) -> Mesher:
     """The mesh in the hands of a mesher; labels are regions."""
     try:
-        return _core.Mesher(
+        return Mesher(
             mesh.points,
             metric(mesh.points),
             mesh.triangles,

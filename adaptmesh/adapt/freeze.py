@@ -11,8 +11,7 @@ from adaptmesh.curves import Curve, Line
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.periodic import periodic_pair, with_partners
 from adaptmesh.mesh.mesh import Mesh
-
-Floats = NDArray[np.float64]
+from adaptmesh.types import Floats
 
 
 def frozen_domain(domain: Domain, mesh: Mesh, names: Iterable[str]) -> Domain:

@@ -17,10 +17,8 @@ from numpy.typing import NDArray
 from adaptmesh.boundary.edge_lengths import straight_lengths
 from adaptmesh.domain.side import Lines
 from adaptmesh.mesh.boundary_polylines import Chains
+from adaptmesh.types import Floats, Index
 from metrics import ControlSpace
-
-Floats = NDArray[np.float64]
-Index = NDArray[np.integer]
 
 SAME = 1e-6
 """Places are the same if they differ by less than this share of the way to the next place."""

@@ -21,21 +21,19 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import Mesher
 from adaptmesh.boundary.edge_lengths import measure_edges, sampler_of, straight_lengths
 from adaptmesh.boundary.path_cuts import TURN, RunParts, surroundings_of, unit_chords
 from adaptmesh.domain.periodic import tied_chords
 from adaptmesh.domain.polyline import Surroundings, chords_along
 from adaptmesh.domain.side import Lines
 from adaptmesh.mesh.boundary_polylines import Chains
+from adaptmesh.types import Floats, Index, Ints
 from metrics import ControlSpace
 
 from .periodic_polylines import Strands, same_places
 from .sub_polylines import is_better, is_off, stretches_of
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Index = NDArray[np.integer]
 T = TypeVar("T", bound=np.generic)
 
 FAR = 1.1
@@ -46,7 +44,7 @@ Rows = dict[int, Floats]
 
 
 def recut(
-    mesher: _core.Mesher, chains: Chains, lines: Lines, field: ControlSpace, most_points: int
+    mesher: Mesher, chains: Chains, lines: Lines, field: ControlSpace, most_points: int
 ) -> Chains:
     """Cut the rows anew where their edges are not unit; what cannot be cut stays as it is.
 
@@ -58,7 +56,7 @@ def recut(
 
 
 def had_better_be_anew(
-    mesher: _core.Mesher, chains: Chains, lines: Lines, field: ControlSpace, most_points: int
+    mesher: Mesher, chains: Chains, lines: Lines, field: ControlSpace, most_points: int
 ) -> bool:
     """Whether rows that are tied differ, or rows off unit are far from what new ones would be.
 
@@ -167,8 +165,7 @@ class _Plan:
         if self.lines.n_straight == len(self.lines):
             return lengths
         turn = np.diff(self.lines.turns(line, place))[starts]
-        out: Floats = np.maximum(lengths, turn / np.radians(TURN))
-        return out
+        return np.maximum(lengths, turn / np.radians(TURN))
 
     def sides(self, anchors: Index) -> _Sides:
         """The sides of stretches between anchors (s, 2)."""
@@ -291,7 +288,7 @@ class _Plan:
 
 
 def _carried_out(
-    rows: Rows, mesher: _core.Mesher, chains: Chains, lines: Lines, field: ControlSpace
+    rows: Rows, mesher: Mesher, chains: Chains, lines: Lines, field: ControlSpace
 ) -> Chains:
     """Cut the mesh as planned, where that turns no triangle; the rows as they are then.
 

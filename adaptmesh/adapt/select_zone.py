@@ -15,17 +15,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import metrics
-from adaptmesh import _core
+from adaptmesh._core import Mesher
+from adaptmesh.types import Bools, Floats, Ints
 from metrics import ControlSpace
 
 from .sub_polylines import UNIT
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Bools = NDArray[np.bool_]
 
 # The mesher knows lengths to about 1 %; this near to a bound they are measured as a report does.
 DOUBT = 0.02
@@ -71,7 +67,7 @@ class Misfits(NamedTuple):
     share: float
 
 
-def find_misfits(mesher: _core.Mesher, field: ControlSpace, fit: Fit) -> Misfits:
+def find_misfits(mesher: Mesher, field: ControlSpace, fit: Fit) -> Misfits:
     """Measure the edges of a mesh, and find where it does not fit."""
     points = mesher.points()
     edges, lengths, is_constrained = mesher.edges()
@@ -112,8 +108,7 @@ def _grown(marks: Bools, edges: Ints, rings: int) -> Bools:
 def _mean_of_edges(values: Floats, edges: Ints, n: int) -> Floats:
     """The mean of the values of the edges of each vertex."""
     ends = edges.ravel()
-    out: Floats = np.bincount(ends, np.repeat(values, 2), n) / _degrees(edges, n)
-    return out
+    return np.bincount(ends, np.repeat(values, 2), n) / _degrees(edges, n)
 
 
 def _mean_around(values: Floats, edges: Ints) -> Floats:
@@ -121,8 +116,7 @@ def _mean_around(values: Floats, edges: Ints) -> Floats:
     n = len(values)
     a, b = edges.T
     total = values + np.bincount(a, values[b], n) + np.bincount(b, values[a], n)
-    out: Floats = total / (1 + _degrees(edges, n))
-    return out
+    return total / (1 + _degrees(edges, n))
 
 
 def _degrees(edges: Ints, n: int) -> Ints:

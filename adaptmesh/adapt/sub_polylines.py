@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Index = NDArray[np.integer]
-Bools = NDArray[np.bool_]
+from adaptmesh.types import Bools, Floats, Index
 
 UNIT = (float(np.sqrt(0.5)) * (1 - 1e-9), float(np.sqrt(2)) * (1 + 1e-9))
 
@@ -68,8 +65,7 @@ def unit_parts(length: float) -> tuple[int, float]:
 
 def is_off(length: Floats) -> Bools:
     """Whether edges are not unit."""
-    out: Bools = (length < UNIT[0]) | (length > UNIT[1])
-    return out
+    return (length < UNIT[0]) | (length > UNIT[1])
 
 
 def is_better(new: Floats, old: Floats) -> bool:

@@ -16,15 +16,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import Fault, triangulate
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.containing import containing_triangles
 from adaptmesh.mesh.validate.subject import edge_keys
+from adaptmesh.types import Floats, Int64s
 
 from .record import at
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -43,10 +41,10 @@ class Faces:
     """
 
     points: Floats
-    triangles: Ints
-    face: Ints
-    left: Ints
-    right: Ints
+    triangles: Int64s
+    face: Int64s
+    left: Int64s
+    right: Int64s
 
     @property
     def count(self) -> int:
@@ -65,10 +63,9 @@ class Faces:
         longest = np.square(p - np.roll(p, 1, axis=1)).sum(axis=2).max(axis=1)
         order = np.lexsort((self._doubled_areas / np.sqrt(longest), self.face))
         last = np.append(self.face[order][1:] != self.face[order][:-1], True)
-        out: Floats = p[order[last]].mean(axis=1)
-        return out
+        return p[order[last]].mean(axis=1)
 
-    def at(self, places: Floats) -> Ints:
+    def at(self, places: Floats) -> Int64s:
         """The face that each place (k, 2) is in; on an edge one beside it, elsewhere 0."""
         found = containing_triangles(self.points, self.triangles, places)
         return np.append(self.face, 0)[found]
@@ -77,21 +74,19 @@ class Faces:
     def _doubled_areas(self) -> Floats:
         p = self.points[self.triangles]
         u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-        out: Floats = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-        return out
+        return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
 
-    def united(self, edges: NDArray[np.bool_]) -> Ints:
+    def united(self, edges: NDArray[np.bool_]) -> Int64s:
         """For each face the number of the one it becomes when edges are taken away."""
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
 
         n = self.count
         links = (np.ones(int(edges.sum())), (self.left[edges], self.right[edges]))
-        out: Ints = connected_components(coo_array(links, shape=(n, n)), directed=False)[1]
-        return out
+        return connected_components(coo_array(links, shape=(n, n)), directed=False)[1]
 
 
-def find_faces(points: Floats, edges: Ints) -> Faces:
+def find_faces(points: Floats, edges: Int64s) -> Faces:
     """Triangulate edges in a frame, and number the faces.
 
     Parameters
@@ -115,8 +110,8 @@ def find_faces(points: Floats, edges: Ints) -> Faces:
     segments = np.concatenate([edges, frame]).astype(np.int32)
     none = np.empty((0, 2))
     try:
-        triangles, _, pieces, _, _ = _core.triangulate(framed, segments, none, none, False)
-    except _core.Fault as fault:
+        triangles, _, pieces, _, _ = triangulate(framed, segments, none, none, False)
+    except Fault as fault:
         kind, _, _, x, y = fault.args
         raise DomainError(
             f"{kind.replace('_', ' ')} are left at {at(x, y)} after the repair: features there are "
@@ -133,7 +128,9 @@ def find_faces(points: Floats, edges: Ints) -> Faces:
     return Faces(framed, corners, face, left[: len(edges)], right[: len(edges)])
 
 
-def _faces_between(triangles: Ints, segments: Ints, corner: int) -> tuple[Ints, Ints, Ints]:
+def _faces_between(
+    triangles: Int64s, segments: Int64s, corner: int
+) -> tuple[Int64s, Int64s, Int64s]:
     """The face of each triangle, and those on the left and right of each segment.
 
     The face of the frame's first corner is number 0; beyond the frame there is -1.
@@ -170,5 +167,5 @@ def _faces_between(triangles: Ints, segments: Ints, corner: int) -> tuple[Ints, 
     return face, left, right
 
 
-def _keys(edges: NDArray[np.integer[Any]], n: int) -> Ints:
+def _keys(edges: NDArray[np.integer[Any]], n: int) -> Int64s:
     return edge_keys(edges[:, 0], edges[:, 1], n)

@@ -24,18 +24,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import encounters
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.distance import distance, meeting, near_points
+from adaptmesh.types import Bools, Floats, Int64s
 
 from .record import Repair, at
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-Pairs = tuple[Ints, Ints]
+Pairs = tuple[Int64s, Int64s]
 
 MOST_ROUNDS = 100
 """Rounds of looking again; real and random outlines need three to ten."""
@@ -79,11 +76,11 @@ class Noded:
     """
 
     points: Floats
-    pieces: Ints
-    segment: Ints
-    lone: Ints
+    pieces: Int64s
+    segment: Int64s
+    lone: Int64s
 
-    def drift(self, points: Floats, segments: Ints) -> float:
+    def drift(self, points: Floats, segments: Int64s) -> float:
         """The farthest that a point of a piece lies from the segment that was given."""
         if not len(self.pieces):
             return 0.0
@@ -119,7 +116,7 @@ def used_tolerance(points: Floats, tolerance: float | None) -> float:
 
 
 def node(
-    points: Floats, segments: Ints, tolerance: float, words: Words, log: list[Repair]
+    points: Floats, segments: Int64s, tolerance: float, words: Words, log: list[Repair]
 ) -> Noded:
     """Divide segments until they meet only at points.
 
@@ -160,7 +157,7 @@ class _Noding:
     """The points and pieces at work, and which of them have to be looked at."""
 
     def __init__(
-        self, points: Floats, segments: Ints, tolerance: float, words: Words, log: list[Repair]
+        self, points: Floats, segments: Int64s, tolerance: float, words: Words, log: list[Repair]
     ) -> None:
         self.points = points.copy()
         self.given = len(points)
@@ -168,11 +165,11 @@ class _Noding:
         self.words, self.log = words, log
         lone = np.flatnonzero(np.bincount(segments.ravel(), minlength=len(points)) == 0)
         # A point of no segment is a segment from it to itself, given after all others.
-        self.pieces: Ints = np.concatenate([segments, np.stack([lone, lone], axis=1)])
+        self.pieces: Int64s = np.concatenate([segments, np.stack([lone, lone], axis=1)])
         self.n_segments = len(segments)
-        self.segment: Ints = np.arange(len(self.pieces))
+        self.segment: Int64s = np.arange(len(self.pieces))
         #: The first segment that each point was given for.
-        self.rank: Ints = np.full(len(points), len(self.pieces))
+        self.rank: Int64s = np.full(len(points), len(self.pieces))
         np.minimum.at(self.rank, self.pieces.ravel(), np.repeat(self.segment, 2))
         self.moved: Bools = np.zeros(len(points), bool)
         #: What was changed since pieces were last compared with each other.
@@ -229,7 +226,7 @@ class _Noding:
 
     def look(self) -> tuple[Pairs, Pairs]:
         """Pieces and points that lie on them, or nearly; and pairs of pieces that cross."""
-        near, crossings = _core.encounters(
+        near, crossings = encounters(
             self.points,
             self.pieces.astype(np.int32),
             self.unseen,
@@ -247,12 +244,12 @@ class _Noding:
         self.unseen[:] = False
         return (piece, v), (i, j)
 
-    def _meeting(self, i: Ints, j: Ints) -> Floats:
+    def _meeting(self, i: Int64s, j: Int64s) -> Floats:
         return meeting(self.points[self.pieces[i]], self.points[self.pieces[j]])
 
     # -- points near segments ----------------------------------------------------------------
 
-    def divide_where_near(self, piece: Ints, v: Ints, crossings: Pairs) -> None:
+    def divide_where_near(self, piece: Int64s, v: Int64s, crossings: Pairs) -> None:
         """Divide pieces at points that lie on them, or nearly."""
         for pieces in crossings:  # to be looked at again, those of them that stay
             self.unseen[pieces] = True
@@ -267,7 +264,7 @@ class _Noding:
         self._move(v[moves], foot[moves])
         self._divide(piece, v)
 
-    def _which_move(self, piece: Ints, v: Ints, off: Floats) -> Bools:
+    def _which_move(self, piece: Int64s, v: Int64s, off: Floats) -> Bools:
         """The first of the hits of each point that may move: onto the segment given first.
 
         A point moves once at most, and only onto what was given before all that it is an end of.
@@ -279,7 +276,7 @@ class _Noding:
         out[order[first]] = True
         return out
 
-    def _move(self, v: Ints, to: Floats) -> None:
+    def _move(self, v: Int64s, to: Floats) -> None:
         self.points[v] = to
         self.moved[v] = True
         touched = np.isin(self.pieces, v).any(axis=1)
@@ -287,7 +284,7 @@ class _Noding:
 
     # -- crossings ---------------------------------------------------------------------------
 
-    def divide_where_crossing(self, i: Ints, j: Ints) -> None:
+    def divide_where_crossing(self, i: Int64s, j: Int64s) -> None:
         """Put a point where two pieces cross."""
         meet = self._meeting(i, j)
         new = len(self.points) + np.arange(len(i))
@@ -300,7 +297,7 @@ class _Noding:
         self.moved = np.append(self.moved, np.ones(len(new), bool))
         self._divide(np.concatenate([i, j]), np.concatenate([new, new]))
 
-    def _divide(self, piece: Ints, v: Ints) -> None:
+    def _divide(self, piece: Int64s, v: Int64s) -> None:
         """Replace pieces by what their points, given in any order, divide them into."""
         ends = self.points[self.pieces[piece]]
         along = ((self.points[v] - ends[:, 0]) * (ends[:, 1] - ends[:, 0])).sum(axis=1)

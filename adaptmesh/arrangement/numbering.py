@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Ints = NDArray[np.int64]
+from adaptmesh.types import Int64s
 
 
-def used_points(pairs: Ints) -> tuple[Ints, Ints]:
+def used_points(pairs: Int64s) -> tuple[Int64s, Int64s]:
     """The points that pairs are made of, sorted, and the pairs in numbers of these."""
     is_used = np.bincount(pairs.ravel()) > 0
     number = np.cumsum(is_used) - 1
     return np.flatnonzero(is_used), number[pairs]
 
 
-def unique_edges(pieces: Ints) -> tuple[Ints, Ints, Ints]:
+def unique_edges(pieces: Int64s) -> tuple[Int64s, Int64s, Int64s]:
     """The pairs of points that pieces join, each once, lower first.
 
     Returns

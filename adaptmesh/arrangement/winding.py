@@ -13,14 +13,12 @@ from collections import defaultdict
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
+
+from adaptmesh.types import Int64s
 
 from .faces import Faces
 
-Ints = NDArray[np.int64]
-
-
-Passes = tuple[Ints, Ints, Ints]
+Passes = tuple[Int64s, Int64s, Int64s]
 
 
 def winding_changes(faces: Faces, passes: Passes) -> Iterator[tuple[int, dict[int, int]]]:
@@ -65,7 +63,7 @@ def winding_changes(faces: Faces, passes: Passes) -> Iterator[tuple[int, dict[in
             todo += [(beyond, 1) for beyond in next_to[face]]
 
 
-def net_passes(edge: Ints, sign: Ints, ring: Ints) -> Passes:
+def net_passes(edge: Int64s, sign: Int64s, ring: Int64s) -> Passes:
     """Edges, rings along them, and how often more along than against; sorted by edge."""
     order = np.lexsort((ring, edge))
     edge, ring, sign = edge[order], ring[order], sign[order]
@@ -73,7 +71,7 @@ def net_passes(edge: Ints, sign: Ints, ring: Ints) -> Passes:
     return edge[start], ring[start], np.add.reduceat(sign, start)
 
 
-def walk(faces: Faces) -> tuple[Ints, Ints, Ints]:
+def walk(faces: Faces) -> tuple[Int64s, Int64s, Int64s]:
     """All faces but the outside in an order of visit; where from, and through which edge."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import breadth_first_order

@@ -17,13 +17,11 @@ from numpy.typing import NDArray
 
 from adaptmesh.domain.paths import Run, points_on
 from adaptmesh.errors import BudgetError
+from adaptmesh.types import Floats, Index
 from metrics import ControlSpace
 from metrics.tensor import lengths
 
 from .edge_lengths import LONGEST_CHORD
-
-Floats = NDArray[np.float64]
-Index = NDArray[np.integer]
 
 # These are explained in core/edge_sampler.hpp, which does the same on straight lines.
 AGREEMENT = 0.05

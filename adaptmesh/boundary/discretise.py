@@ -11,6 +11,7 @@ from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.periodic import frozen_pieces, tied_chords, tied_cuts
 from adaptmesh.domain.polyline import Chords
 from adaptmesh.errors import BudgetError
+from adaptmesh.types import Floats, Index, Ints
 from metrics import ControlSpace
 
 from .edge_lengths import measure_edges, sampler_of
@@ -18,10 +19,6 @@ from .line_rounding import nearest_to_lines
 from .path_cuts import TURN, RunParts, surroundings_of, unit_chords
 from .safe_chains import spans_of
 from .vertex_limit import about
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Index = NDArray[np.integer]
 
 
 @dataclass(frozen=True)
@@ -227,5 +224,4 @@ def _canonical(points: Floats, pieces: Ints) -> Ints:
     """Pieces, each from its lower left to its upper right end."""
     p, q = points[pieces[:, 0]], points[pieces[:, 1]]
     turned = (p[:, 0] > q[:, 0]) | ((p[:, 0] == q[:, 0]) & (p[:, 1] > q[:, 1]))
-    out: Ints = np.where(turned[:, None], pieces[:, ::-1], pieces)
-    return out
+    return np.where(turned[:, None], pieces[:, ::-1], pieces)

@@ -6,14 +6,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import EdgeSampler, EdgesToMeasure, Mesher, edge_sampler
 from adaptmesh.errors import BudgetError
+from adaptmesh.types import Floats, Index
 from metrics import ControlSpace
-
-Floats = NDArray[np.float64]
-Index = NDArray[np.integer]
 
 # The metric is looked at this closely along segments, in metric length: a layer that meets the
 # boundary between two looks would be missed there for good.
@@ -23,15 +20,13 @@ LONGEST_CHORD = 0.125
 MOST_CHORDS = 8_000_000
 
 
-def sampler_of(points: Floats, tensors: Floats, edges: Index) -> _core.EdgeSampler:
+def sampler_of(points: Floats, tensors: Floats, edges: Index) -> EdgeSampler:
     """What measures, and cuts, edges (k, 2) between points (n, 2) with metrics (n, 3)."""
     a, b = edges.T
-    return _core.edge_sampler(points[a], tensors[a], points[b], tensors[b], LONGEST_CHORD)
+    return edge_sampler(points[a], tensors[a], points[b], tensors[b], LONGEST_CHORD)
 
 
-def measure_edges(
-    sampler: _core.EdgeSampler, field: ControlSpace, most_points: float = np.inf
-) -> Floats:
+def measure_edges(sampler: EdgeSampler, field: ControlSpace, most_points: float = np.inf) -> Floats:
     """Metric lengths of the edges in a sampler, asking the field where it wants to know."""
     while len(wanted := sampler.wanted()):
         if len(wanted) > min(most_points * 2 / LONGEST_CHORD, MOST_CHORDS):
@@ -41,8 +36,7 @@ def measure_edges(
                 f"({x:g}, {y:g}): ask for larger sizes, or allow more"
             )
         sampler.feed(field(wanted))
-    lengths: Floats = sampler.lengths()
-    return lengths
+    return sampler.lengths()
 
 
 def straight_lengths(
@@ -52,14 +46,12 @@ def straight_lengths(
     return measure_edges(sampler_of(points, field(points), edges), field, most_points)
 
 
-def refresh(mesher: _core.Mesher, field: ControlSpace) -> None:
+def refresh(mesher: Mesher, field: ControlSpace) -> None:
     """Evaluate the metric where vertices are new or have moved."""
     mesher.set_stale_metrics(field(mesher.stale_points()))
 
 
-def measure_fresh_edges(
-    mesher: _core.Mesher, field: ControlSpace, uncut_below: float
-) -> _core.EdgesToMeasure:
+def measure_fresh_edges(mesher: Mesher, field: ControlSpace, uncut_below: float) -> EdgesToMeasure:
     """Measure the edges that have changed, and let the mesher know where its lengths are off."""
     edges = mesher.fresh_edges(uncut_below)
     measure_edges(edges.sampler, field)

@@ -13,10 +13,8 @@ some of the places next to the point that coordinates can be rounded to are far 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Index = NDArray[np.integer]
+from adaptmesh.types import Floats, Index
 
 FAR = 1e-12
 """Lines are far from the origin if their coordinates are rounded by more than this share of them.
@@ -73,5 +71,4 @@ def nearest_to_lines(points: Floats, starts: Floats, ends: Floats, line: Index) 
 
 
 def _cross(u: Floats, v: Floats) -> Floats:
-    out: Floats = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-    return out
+    return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]

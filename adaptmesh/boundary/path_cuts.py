@@ -13,19 +13,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inscribed_polygon import MESH_TURN
 from adaptmesh.domain.polyline import Chords, Surroundings, chords_along
+from adaptmesh.types import Floats, Index
 from metrics import ControlSpace
 
 from .curve_cuts import equal_shares, measure_runs
 from .edge_lengths import straight_lengths
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Index = NDArray[np.integer]
 
 # By how much a curve may turn along an edge of a mesh, in degrees: a circle gets at least six.
 TURN = MESH_TURN

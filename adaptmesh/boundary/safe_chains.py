@@ -17,9 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh.domain.polyline import Chords, Surroundings
-
-Index = NDArray[np.integer]
-Bools = NDArray[np.bool_]
+from adaptmesh.types import Bools, Index
 
 MOST_TURN = np.pi / 2
 

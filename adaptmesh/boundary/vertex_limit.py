@@ -6,7 +6,7 @@ import operator
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from adaptmesh import _core
+from adaptmesh._core import MAX_VERTICES
 from adaptmesh.errors import BudgetError
 
 Progress = Callable[[str, float], None]
@@ -32,7 +32,7 @@ class Budget:
             raise TypeError(f"max_vertices must be an integer, not {self.max_vertices!r}") from None
         if most < 3:
             raise ValueError(f"max_vertices={most}: the smallest mesh has 3 vertices")
-        object.__setattr__(self, "max_vertices", min(most, _core.MAX_VERTICES))
+        object.__setattr__(self, "max_vertices", min(most, MAX_VERTICES))
 
     def check_prediction(self) -> None:
         """Refuse what is expected to be too large."""

@@ -13,13 +13,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import adaptmesh as am
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.polygons import domain_of_polygons
+from adaptmesh.types import Floats
 
-Floats = NDArray[np.float64]
 Field = Callable[[Floats], Floats]
 
 
@@ -231,8 +230,7 @@ class Wing:
         to_tail = np.linalg.norm(self.contour - (1.0, 0.0), axis=1)
         nose = 0.1 * 0.0159 * self.coarsening + 0.06 * to_nose
         tail = self.h_edges + 0.12 * to_tail
-        spacing: Floats = np.minimum(np.minimum(nose, tail), 0.025 * self.coarsening)
-        return spacing
+        return np.minimum(np.minimum(nose, tail), 0.025 * self.coarsening)
 
     def unit_spaced(self) -> Floats:
         """Points (k, 2) on the contour, one step of `spacing` apart, once round."""

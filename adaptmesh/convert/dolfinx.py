@@ -21,6 +21,7 @@ from adaptmesh.errors import FormatError
 from adaptmesh.mesh.incoming import Content
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.validate.subject import edge_keys
+from adaptmesh.types import Int64s
 
 from .labels import incoming
 
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
     import mpi4py.MPI
 
 __all__ = ["from_dolfinx", "to_dolfinx", "vertex_values_of_dolfinx"]
-
-Ints = NDArray[np.int64]
 
 
 def to_dolfinx(
@@ -167,9 +166,9 @@ class _Numbering:
     triangle_of_cell : (m,) array
     """
 
-    corners: Ints
-    point_of_vertex: Ints
-    triangle_of_cell: Ints
+    corners: Int64s
+    point_of_vertex: Int64s
+    triangle_of_cell: Int64s
 
     @classmethod
     def of(cls, domain: dolfinx.mesh.Mesh) -> _Numbering:
@@ -189,19 +188,17 @@ class _Numbering:
         points = np.asarray(geometry.input_global_indices)
         return cls(corners, points[node_of_vertex], triangle_of_cell)
 
-    def ends_of_facets(self, domain: dolfinx.mesh.Mesh) -> Ints:
+    def ends_of_facets(self, domain: dolfinx.mesh.Mesh) -> Int64s:
         """The points of each facet, (e, 2)."""
         domain.topology.create_connectivity(1, 0)
-        ends: Ints = self.point_of_vertex[
+        return self.point_of_vertex[
             np.asarray(domain.topology.connectivity(1, 0).array).reshape(-1, 2)
         ]
-        return ends
 
 
-def _table(rows: Any, count: int) -> Ints:
+def _table(rows: Any, count: int) -> Int64s:
     """A table of `count` rows, which older versions keep as an adjacency list."""
-    out: Ints = np.asarray(getattr(rows, "array", rows), dtype=np.int64).reshape(count, -1)
-    return out
+    return np.asarray(getattr(rows, "array", rows), dtype=np.int64).reshape(count, -1)
 
 
 def _coordinate_element() -> dict[str, Any]:

@@ -13,8 +13,7 @@ from adaptmesh.files.located import located
 from adaptmesh.mesh.incoming import Content, mesh_of
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.to_domain import with_interfaces
-
-Ints = NDArray[np.int32]
+from adaptmesh.types import Ints
 
 
 def incoming(content: Content, origin: str) -> Mesh:

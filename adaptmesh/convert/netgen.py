@@ -11,6 +11,7 @@ from adaptmesh.errors import FormatError
 from adaptmesh.mesh.incoming import Content
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.to_domain import with_interfaces
+from adaptmesh.types import Ints
 
 from .labels import incoming, names_of_tags
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 __all__ = ["from_netgen", "to_netgen"]
 
-Ints = NDArray[np.int32]
 
 UNNAMED = "default"  # what Netgen calls a material or boundary without a name
 

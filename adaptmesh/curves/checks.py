@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from adaptmesh.domain import inputs as domain_input
 from adaptmesh.errors import DomainError
-
-Floats = NDArray[np.float64]
+from adaptmesh.types import Floats
 
 
 def checked_points(points: ArrayLike, what: str, least: int) -> Floats:

@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats
 
 from .checks import checked_point
-from .curve import Curve, Floats
+from .curve import Curve
 
 FULL_TURN = 2 * np.pi
 
@@ -55,13 +56,11 @@ class EllipticArc(Curve):
 
     def _point(self, t: Floats) -> Floats:
         phi = self.start_angle + t * self.turn
-        out: Floats = self.centre + np.stack([np.cos(phi), np.sin(phi)], axis=1) @ self._axes
-        return out
+        return self.centre + np.stack([np.cos(phi), np.sin(phi)], axis=1) @ self._axes
 
     def _derivative(self, t: Floats) -> Floats:
         phi = self.start_angle + t * self.turn
-        out: Floats = self.turn * np.stack([-np.sin(phi), np.cos(phi)], axis=1) @ self._axes
-        return out
+        return self.turn * np.stack([-np.sin(phi), np.cos(phi)], axis=1) @ self._axes
 
     def __repr__(self) -> str:
         x, y = self.centre.tolist()

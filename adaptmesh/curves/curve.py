@@ -6,12 +6,11 @@ from abc import ABC, abstractmethod
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats
 from adaptmesh.value import Value
-
-Floats = NDArray[np.float64]
 
 
 class Curve(Value, ABC):
@@ -55,14 +54,12 @@ class Curve(Value, ABC):
     @cached_property
     def start(self) -> Floats:
         """The point at t = 0, (2,)."""
-        start: Floats = self.point(0.0)[0]
-        return start
+        return self.point(0.0)[0]
 
     @cached_property
     def end(self) -> Floats:
         """The point at t = 1, (2,); that at t = 0 if the curve is closed."""
-        end: Floats = self.start if self.is_closed else self.point(1.0)[0]
-        return end
+        return self.start if self.is_closed else self.point(1.0)[0]
 
     def reversed(self) -> Curve:
         """The same curve, run through backwards."""
@@ -113,8 +110,7 @@ class Part(Curve):
 
     def _inside(self, t_of_whole: Floats) -> Floats:
         t = (t_of_whole - self.t0) / (self.t1 - self.t0)
-        out: Floats = np.sort(t[(t > 0) & (t < 1)])
-        return out
+        return np.sort(t[(t > 0) & (t < 1)])
 
     def _point(self, t: Floats) -> Floats:
         return self.whole.point(self._of_whole(t))
@@ -124,8 +120,7 @@ class Part(Curve):
 
     def _of_whole(self, t: Floats) -> Floats:
         # both ends exactly
-        out: Floats = np.where(t == 1, self.t1, self.t0 + t * (self.t1 - self.t0))
-        return out
+        return np.where(t == 1, self.t1, self.t0 + t * (self.t1 - self.t0))
 
     def __repr__(self) -> str:
         return f"{self.whole!r} from t = {self.t0:g} to {self.t1:g}"

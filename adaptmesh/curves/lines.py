@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from adaptmesh.types import Floats
+
 from .checks import check_distinct, checked_point, checked_points
-from .curve import Curve, Floats
+from .curve import Curve
 
 
 class Polyline(Curve):
@@ -38,13 +40,11 @@ class Polyline(Curve):
     def _point(self, t: Floats) -> Floats:
         k, s = self._line(t)
         a, b = self.points[k], self.points[k + 1]
-        out: Floats = np.where((s == 1)[:, None], b, a + s[:, None] * (b - a))
-        return out
+        return np.where((s == 1)[:, None], b, a + s[:, None] * (b - a))
 
     def _derivative(self, t: Floats) -> Floats:
         k, _ = self._line(t)
-        out: Floats = (len(self.points) - 1) * (self.points[k + 1] - self.points[k])
-        return out
+        return (len(self.points) - 1) * (self.points[k + 1] - self.points[k])
 
     def _line(self, t: Floats) -> tuple[NDArray[np.intp], Floats]:
         lines = len(self.points) - 1

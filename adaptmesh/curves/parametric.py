@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats
 
-from .curve import Curve, Floats
+from .curve import Curve
 
 CLOSED = 1e-9
 """The ends of a closed `Parametric` curve may be apart by this share of its size."""
@@ -73,8 +74,7 @@ class Parametric(Curve):
             return self._returned(self._given_derivative(t), len(t), "derivative")
         low, high = np.maximum(t - DIFFERENCE, 0), np.minimum(t + DIFFERENCE, 1)
         low = np.where(np.isin(t, self._breaks), t, low)  # no differences across a kink
-        out: Floats = (self._point(high) - self._point(low)) / (high - low)[:, None]
-        return out
+        return (self._point(high) - self._point(low)) / (high - low)[:, None]
 
     def _returned(self, values: ArrayLike, n: int, what: str) -> Floats:
         out = np.asarray(values, np.float64)

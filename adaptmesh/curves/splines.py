@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats
 
 from .checks import check_distinct, checked_points
-from .curve import Curve, Floats
+from .curve import Curve
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline as ScipyBSpline
@@ -68,8 +69,7 @@ class Spline(Curve):
     @property
     def knots(self) -> Floats:
         """The parameters of the points between its ends."""
-        inner: Floats = self._t[1:-1]
-        return inner
+        return self._t[1:-1]
 
     def _point(self, t: Floats) -> Floats:
         return np.asarray(self._spline(t), np.float64)
@@ -134,8 +134,7 @@ class BSpline(Curve):
     def breaks(self) -> Floats:
         """The knots where it is but continuous: those as many as its degree."""
         knots, times = self._inner_knots
-        out: Floats = knots[times >= self.degree]
-        return out
+        return knots[times >= self.degree]
 
     @property
     def knots(self) -> Floats:
@@ -162,8 +161,7 @@ class BSpline(Curve):
         if len(bad) or not np.isfinite(u).all() or not u[k] < u[n]:
             at = f" after knot {bad[0]}" if len(bad) else ""
             raise DomainError(f"BSpline: knots must be finite and ascend{at}")
-        out: Floats = (u - u[k]) / (u[n] - u[k])
-        return out
+        return (u - u[k]) / (u[n] - u[k])
 
     def _with_coefficients(self, coefficients: Floats) -> ScipyBSpline:
         from scipy.interpolate import BSpline as ScipyBSpline
@@ -172,14 +170,12 @@ class BSpline(Curve):
 
     def _point(self, t: Floats) -> Floats:
         values = self._spline(t)
-        out: Floats = values[:, :2] / values[:, 2:]
-        return out
+        return values[:, :2] / values[:, 2:]
 
     def _derivative(self, t: Floats) -> Floats:
         values, slopes = self._spline(t), self._slope(t)
         p = values[:, :2] / values[:, 2:]
-        out: Floats = (slopes[:, :2] - p * slopes[:, 2:]) / values[:, 2:]
-        return out
+        return (slopes[:, :2] - p * slopes[:, 2:]) / values[:, 2:]
 
 
 def _de_casteljau(control: Floats, t: Floats) -> Floats:
@@ -188,5 +184,4 @@ def _de_casteljau(control: Floats, t: Floats) -> Floats:
     p = np.broadcast_to(control, (len(t), *control.shape))
     while p.shape[1] > 1:
         p = (1 - s) * p[:, :-1] + s * p[:, 1:]
-    out: Floats = p[:, 0].copy()
-    return out
+    return p[:, 0].copy()

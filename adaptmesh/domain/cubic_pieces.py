@@ -10,16 +10,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from adaptmesh.types import Bools, Floats, Index
 
 from .paths import derivatives_of_parts, points_on
 
 if TYPE_CHECKING:
     from .domain import Domain
 
-Floats = NDArray[np.float64]
-Index = NDArray[np.integer]
-Bools = NDArray[np.bool_]
 
 CHORD, CUBIC = 1e-6, 1e-10
 """How far chords, and cubics, are off the curves at most, as shares of the extent of the domain."""
@@ -114,13 +112,11 @@ def hermite(ends: Floats, derivatives: Floats, t: Floats) -> Floats:
     a, b = ends[:, None, 0], ends[:, None, 1]
     c, d = derivatives[:, None, 0], derivatives[:, None, 1]
     t = t[None, :, None]
-    out: Floats = a + t * (c + t * (3 * (b - a) - 2 * c - d + t * (c + d - 2 * (b - a))))
-    return out
+    return a + t * (c + t * (3 * (b - a) - 2 * c - d + t * (c + d - 2 * (b - a))))
 
 
 def _off_chord(points: Floats, ends: Floats) -> Floats:
     """Distances (k, m) of points (k, m, 2) from the lines through ends (k, 2, 2)."""
     v, w = np.diff(ends, axis=1), points - ends[:, :1]
     length = np.maximum(np.hypot(v[..., 0], v[..., 1]), np.finfo(float).tiny)
-    out: Floats = np.abs(v[..., 0] * w[..., 1] - v[..., 1] * w[..., 0]) / length
-    return out
+    return np.abs(v[..., 0] * w[..., 1] - v[..., 1] * w[..., 0]) / length

@@ -10,17 +10,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import Fault, triangulate
 from adaptmesh.curves import Curve
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats, Ints
 from adaptmesh.value import Value
 
 from .cubic_pieces import CubicPieces, cubic_pieces
 from .inputs import (
     ByLabel,
-    Floats,
     Inside,
-    Ints,
     Label,
     checked_names,
     checked_number,
@@ -646,13 +645,12 @@ class Domain(Value):
 
     def region_of_label(self, labels: Ints) -> Ints:
         """Region numbers from what the core numbers by seed: 0 is no seed, i + 1 is seed i."""
-        out: Ints = np.concatenate([[0], self.seed_regions]).astype(np.int32)[labels]
-        return out
+        return np.concatenate([[0], self.seed_regions]).astype(np.int32)[labels]
 
     def _triangulate(self, certain: bool) -> tuple[Ints, Ints, Ints, Ints, NDArray[np.bool_]]:
         try:
-            return _core.triangulate(
+            return triangulate(
                 self.points, self.segments, self.holes, self.seeds, self.nesting, certain
             )
-        except _core.Fault as fault:
+        except Fault as fault:
             raise DomainError(fault_text(self, *fault.args)) from None

@@ -13,26 +13,24 @@ from dataclasses import dataclass, field
 from heapq import heappop, heappush
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.arrangement import NOWHERE, Faces, Repair
 from adaptmesh.arrangement.winding import Passes, winding_changes
+from adaptmesh.types import Int64s
 
 from .hole_depths import hole_depths
 from .outline import Shape
 from .rings import Ring
 
-Ints = NDArray[np.int64]
-
 
 def owners_of_faces(
     faces: Faces,
-    edges: Ints,
+    edges: Int64s,
     passes: Passes,
     shapes: Sequence[Shape],
     rings: list[Ring],
     log: list[Repair],
-) -> Ints:
+) -> Int64s:
     """The polygon that each face belongs to, -1 for none.
 
     Parameters

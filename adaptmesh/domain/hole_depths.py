@@ -14,17 +14,15 @@ from __future__ import annotations
 from collections import defaultdict
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.arrangement import Faces
 from adaptmesh.arrangement.winding import Passes, winding_changes
+from adaptmesh.types import Int64s
 
 from .rings import Ring
 
-Ints = NDArray[np.int64]
 
-
-def hole_depths(faces: Faces, edges: Ints, passes: Passes, rings: list[Ring]) -> dict[int, int]:
+def hole_depths(faces: Faces, edges: Int64s, passes: Passes, rings: list[Ring]) -> dict[int, int]:
     """By ring, for the holes that wind around anything: how many holes of their part they lie in.
 
     Parameters
@@ -68,7 +66,7 @@ def hole_depths(faces: Faces, edges: Ints, passes: Passes, rings: list[Ring]) ->
     return depths
 
 
-def _meeting_holes(edges: Ints, passes: Passes, rings: list[Ring]) -> set[int]:
+def _meeting_holes(edges: Int64s, passes: Passes, rings: list[Ring]) -> set[int]:
     """The holes that have a point in common with another hole of their part."""
     edge, ring, _ = passes
     is_hole = np.array([r.number > 0 for r in rings])[ring]

@@ -12,10 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats, Ints
 from adaptmesh.value import FrozenMapping
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 Label = str | int
 """A name, or a number that has none."""

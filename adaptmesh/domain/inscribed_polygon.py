@@ -10,13 +10,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import orient2d
 from adaptmesh.curves import Curve
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats, Ints
 from adaptmesh.value import Value
 
 from . import inputs as domain_input
-from .inputs import Floats, Inside, Ints, read_only
+from .inputs import Inside, read_only
 from .paths import Run, are_near, join, length_of, name_of_curve, points_on
 from .polyline import Surroundings, chords_along
 
@@ -152,14 +153,12 @@ def _areas_beside(line: Run, u: Floats) -> Floats:
     is_last = np.append(chord[1:] != chord[:-1], True)
     to = np.where(is_last[:, None], p1[chord], np.roll(onto, -1, axis=0))
     jumps = cross(off - p0[chord], to - p0[chord])
-    out: Floats = 0.5 * np.bincount(chord, swept + jumps, minlength=len(u)).astype(np.float64)
-    return out
+    return 0.5 * np.bincount(chord, swept + jumps, minlength=len(u)).astype(np.float64)
 
 
 def cross(p: Floats, q: Floats) -> Floats:
     """Areas of the parallelograms of vectors (k, 2)."""
-    out: Floats = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
-    return out
+    return p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
 
 
 class Skeleton(NamedTuple):
@@ -271,7 +270,7 @@ def _divided(points: Floats, lines: Ints, owners: Ints) -> tuple[Ints, Ints]:
     tree = shapely.STRtree(shapely.points(points))
     line, point = tree.query(shapely.linestrings(points[lines]))
     a, b = lines[line].T
-    on = (_core.orient2d(points[a], points[b], points[point]) == 0) & (point != a) & (point != b)
+    on = (orient2d(points[a], points[b], points[point]) == 0) & (point != a) & (point != b)
     line, point = line[on], point[on]
     along = ((points[point] - points[lines[line, 0]]) ** 2).sum(axis=1)
     order = np.lexsort([along, line])

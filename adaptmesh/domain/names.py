@@ -6,9 +6,9 @@ import copy
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats, Ints
 from adaptmesh.value import FrozenMapping
 
 from .inputs import ByLabel, checked_names, labelled, numbered, read_only
@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from .domain import Domain
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 
 def sides_of_domain(domain: Domain) -> Sides:
@@ -51,8 +48,7 @@ def _outward(domain: Domain) -> Floats:
     d = np.diff(domain.points[domain.segments], axis=1)[:, 0]
     to_right = np.stack([d[:, 1], -d[:, 0]], axis=1) / np.hypot(*d.T)[:, None]
     sign = np.where(lefts == pieces, 1.0, np.where(rights == pieces, -1.0, np.nan))
-    out: Floats = sign[:, None] * to_right
-    return out
+    return sign[:, None] * to_right
 
 
 def _sides_of_curves(domain: Domain) -> Sides:

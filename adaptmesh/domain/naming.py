@@ -15,19 +15,16 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Bools, Floats, Ints
 
 from .inputs import ByLabel, Label, check_is_mapping, checked_points
 
 if TYPE_CHECKING:
     import shapely
 from adaptmesh.value import Value
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Bools = NDArray[np.bool_]
 
 LOOKS = (np.arange(9) + 0.5) / 9
 """Where along each side, from 0 to 1, a condition is looked at: not at its ends, which other sides

@@ -7,16 +7,15 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from adaptmesh.errors import DomainError, FormatError
+from adaptmesh.types import Floats
 from adaptmesh.value import Value
 
 from .domain import Domain
 from .inputs import OR_REPAIR, ByLabel, is_level, labelled
 from .naming import Chosen
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,13 +21,10 @@ from numpy.typing import NDArray
 
 from adaptmesh.curves import Curve
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats, Index, Ints
 from adaptmesh.value import Value
 
 from .inputs import rows_of_each
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Index = NDArray[np.integer]
 
 LOOKS = 8
 """Steps by which the length of a piece of a curve is measured."""
@@ -279,8 +276,7 @@ def places_of(ends: Floats, tolerance: float) -> NDArray[np.intp]:
     pairs = KDTree(ends).query_pairs(tolerance, output_type="ndarray")
     n = len(ends)
     graph = coo_array((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(n, n))
-    label: NDArray[np.intp] = connected_components(graph, directed=False)[1]
-    return label
+    return connected_components(graph, directed=False)[1]
 
 
 def are_near(points: Floats, places: Floats, tolerance: float) -> NDArray[np.bool_]:
@@ -290,8 +286,7 @@ def are_near(points: Floats, places: Floats, tolerance: float) -> NDArray[np.boo
     if not len(places):
         return np.zeros(len(points), bool)
     distance, _ = KDTree(places).query(points)
-    out: NDArray[np.bool_] = distance <= tolerance
-    return out
+    return distance <= tolerance
 
 
 # Ends are numbered: e < n is where piece e begins, e >= n where piece e - n ends. To walk a piece
@@ -335,8 +330,7 @@ def _direction(curve: Curve) -> Floats:
     if np.hypot(*out) < 1e-3 * np.hypot(*step) / 1e-4:  # stands still there, or nearly
         out = step
     norm = np.hypot(*out)
-    unit: Floats = out / norm if norm else np.array([1.0, 0.0])
-    return unit
+    return out / norm if norm else np.array([1.0, 0.0])
 
 
 def _chains(node: list[int], at: list[list[int]], is_corner: list[bool], n: int) -> list[list[int]]:

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats, Index, Ints
 from adaptmesh.value import Value
 
 from .inputs import checked_number
@@ -30,9 +31,6 @@ if TYPE_CHECKING:
 
     from .domain import Domain
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Index = NDArray[np.integer]
 
 TOLERANCE = 1e-9
 """Share of the extent of the domain by which images may miss what they are to meet."""
@@ -67,8 +65,7 @@ class Motion(Value):
         return Motion(self.turn.T, -self.turn.T @ self.shift)
 
     def __call__(self, points: Floats) -> Floats:
-        out: Floats = points @ self.turn.T + self.shift
-        return out
+        return points @ self.turn.T + self.shift
 
 
 def _vector(value: ArrayLike, what: str) -> Floats:
@@ -226,8 +223,7 @@ def _partners(
     nearest = KDTree(either).query(images, p=np.inf)[1] % len(second)
     if len(np.unique(nearest)) < len(nearest):
         raise DomainError(f"two parts of {names[0]!r} are carried to the same part of {names[1]!r}")
-    out: Index = nearest
-    return out
+    return nearest
 
 
 def _refuse_without_image(
@@ -330,8 +326,7 @@ def tied_chords(
 def _carried(source: Run, target: Run, u: Floats, motion: Motion) -> Floats:
     """Parameters on the target of the images of points of the source; ends to ends."""
     out = np.sort(images_on(target, motion(source.point(u[1:-1]))))
-    cuts: Floats = np.concatenate([[0.0], out, [target.length]])
-    return cuts
+    return np.concatenate([[0.0], out, [target.length]])
 
 
 def images_on(run: Run, points: Floats) -> Floats:
@@ -346,8 +341,7 @@ def images_on(run: Run, points: Floats) -> Floats:
     for _ in range(_NEWTON):
         off, d = points - run.point(u), run.derivative(u)
         u = np.clip(u + (off * d).sum(axis=1) / (d * d).sum(axis=1), 0, run.length)
-    out: Floats = u
-    return out
+    return u
 
 
 def periodic_vertices(mesh: Mesh, pair: PeriodicPair | PeriodicSides) -> Ints:

@@ -16,7 +16,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from adaptmesh.types import Floats, Int64s
 
 from .inputs import labelled
 from .outline import Outline
@@ -24,9 +25,6 @@ from .periodic import Motion, pair_motion, periodic_pair, side_pieces, used_tole
 
 if TYPE_CHECKING:
     from .domain import Domain
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 def domain_with_pair(
@@ -42,7 +40,7 @@ def domain_with_pair(
 
 def _missing(
     domain: Domain, source: str, target: str, motion: Motion, tolerance: float
-) -> tuple[Floats, Ints]:
+) -> tuple[Floats, Int64s]:
     """Images of corners of the source within straight pieces of the target, and the segments."""
     import shapely
     from scipy.spatial import KDTree
@@ -62,7 +60,7 @@ def _missing(
     return images[image], domain.piece_segments[theirs[piece[first]]].astype(np.int64)
 
 
-def _divided(domain: Domain, places: Floats, segment: Ints) -> Domain:
+def _divided(domain: Domain, places: Floats, segment: Int64s) -> Domain:
     """A domain of straight segments with further points on some of these, which divide them.
 
     The first part of a segment keeps its number; the others are numbered on after the last one.

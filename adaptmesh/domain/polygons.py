@@ -19,6 +19,7 @@ from adaptmesh.arrangement import Faces, Repair, Repairs, find_faces, node, used
 from adaptmesh.arrangement.numbering import unique_edges, used_points
 from adaptmesh.arrangement.winding import Passes, net_passes
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats, Int64s
 
 from .domain import Domain
 from .face_owners import owners_of_faces
@@ -27,9 +28,6 @@ from .rings import REPEATED, Rings, rings_of
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon, Polygon
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 def domain_of_polygons(
@@ -100,7 +98,7 @@ def repaired_domain_of_shapes(
 
 def _record_what_is_dropped(
     points: Floats,
-    edges: Ints,
+    edges: Int64s,
     kept: NDArray[np.bool_],
     rings: Rings,
     passes: Passes,
@@ -131,10 +129,10 @@ def _record_what_is_dropped(
 
 def _domain(
     points: Floats,
-    edges: Ints,
+    edges: Int64s,
     kept: NDArray[np.bool_],
     faces: Faces,
-    owner: Ints,
+    owner: Int64s,
     shapes: Sequence[Shape],
 ) -> Domain:
     """The domain of the faces that have an owner, with a region for each name."""
@@ -159,7 +157,7 @@ def _domain(
     )
 
 
-def _names(left: Ints, right: Ints, shapes: Sequence[Shape]) -> dict[str, list[int]]:
+def _names(left: Int64s, right: Int64s, shapes: Sequence[Shape]) -> dict[str, list[int]]:
     """The edges of each border, by the regions beside it."""
     beside = np.sort(np.stack([left, right], axis=1), axis=1)
     borders, border = np.unique(beside, axis=0, return_inverse=True)

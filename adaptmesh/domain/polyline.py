@@ -16,17 +16,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.curves import Curve
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.crossing import meet
+from adaptmesh.types import Floats, Index, Ints
 
 from .paths import Run, name_of_curve, points_on
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Index = NDArray[np.integer]
 
 LOOKS = 16
 """A curve is looked at in so many steps along each chord."""

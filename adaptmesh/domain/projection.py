@@ -7,15 +7,14 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from adaptmesh.types import Floats, Index
 
 from .paths import derivatives_on, points_on
 
 if TYPE_CHECKING:
     from .domain import Domain
 
-Floats = NDArray[np.float64]
-Index = NDArray[np.integer]
 
 REACH = 0.15
 """Curves are nearer to the chords of the domain than this share of the chord's length."""
@@ -160,8 +159,7 @@ def _nearest(domain: Domain, run: Index, u: Floats, points: Floats) -> Floats:
         out, before = np.clip(out + step, low, high), out
         if (np.abs(out - before) <= LAST_STEP).all():
             break
-    nearest: Floats = out
-    return nearest
+    return out
 
 
 def _nearest_bracketed(domain: Domain, run: Index, u: Floats, points: Floats) -> Floats:
@@ -187,5 +185,4 @@ def _nearest_bracketed(domain: Domain, run: Index, u: Floats, points: Floats) ->
         left = left[np.abs(out[left] - at) > ROUNDING * np.maximum(1, at)]
         if not len(left):
             break
-    nearest: Floats = out
-    return nearest
+    return out

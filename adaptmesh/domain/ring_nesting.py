@@ -8,13 +8,12 @@ from numpy.typing import NDArray
 from adaptmesh.arrangement import Repair, find_faces
 from adaptmesh.arrangement.winding import net_passes
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats, Int64s
 
 from .face_owners import owners_of_faces
-from .inputs import OR_REPAIR, Floats
+from .inputs import OR_REPAIR
 from .outline import Shape
 from .rings import Ring, ring_area, ring_label
-
-Ints = NDArray[np.int64]
 
 
 def rings_with_labels(shape: Shape) -> tuple[list[Ring], list[Floats]]:
@@ -36,7 +35,7 @@ def refuse_rings_out_of_place(
     points: Floats,
     pieces: NDArray[np.int32],
     along: NDArray[np.bool_],
-    ring: Ints,
+    ring: Int64s,
 ) -> None:
     """Raise a `DomainError` if a hole is not in its shell, or parts or holes overlap.
 

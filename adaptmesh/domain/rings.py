@@ -6,16 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.arrangement import NOWHERE, Repair, Words, at, first_of_equal
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats, Int64s
 
 from .inputs import LARGEST
 from .outline import Shape
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 REPEATED = "duplicate points"
 """The kind of a repair of points repeated in a row of a ring: to leave them out changes nothing."""
@@ -65,9 +62,9 @@ class Rings:
 
     rings: list[Ring]
     points: Floats
-    segments: Ints
-    ring: Ints
-    number: Ints
+    segments: Int64s
+    ring: Int64s
+    number: Int64s
 
     def words(self) -> Words:
         """How to call the points and segments."""
@@ -167,7 +164,9 @@ def _check(points: Floats, label: str) -> None:
         raise DomainError(f"point {bad[0]} of {label} is ({x:g}, {y:g}), {why}")
 
 
-def _closed(given: Floats, label: str, must_close: bool, log: list[Repair]) -> tuple[Floats, Ints]:
+def _closed(
+    given: Floats, label: str, must_close: bool, log: list[Repair]
+) -> tuple[Floats, Int64s]:
     """The points of a ring, none equal to the next, and their numbers; none if it is no ring."""
     points, number = given, np.arange(len(given))
     if len(points) > 1 and (points[0] == points[-1]).all():

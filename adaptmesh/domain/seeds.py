@@ -8,16 +8,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import Fault, triangulate
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.containing import containing_triangles
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.validate.subject import edge_keys
+from adaptmesh.types import Floats, Ints
 
 from .inputs import rows_of_each
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 OUTSIDE = -(2**40)  # a number that no region has
 
@@ -47,8 +45,8 @@ def hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
     """A point inside every hole: those parts of the filled outline that the mesh does not cover."""
     nowhere = np.empty((0, 2))
     try:
-        filled, _, pieces, _, _ = _core.triangulate(points, segments, nowhere, nowhere, False)
-    except _core.Fault as fault:
+        filled, _, pieces, _, _ = triangulate(points, segments, nowhere, nowhere, False)
+    except Fault as fault:
         *_, x, y = fault.args
         raise DomainError(
             f"the mesh lies over itself near ({x:.17g}, {y:.17g}), so it covers no domain; its "
@@ -62,8 +60,7 @@ def hole_points(mesh: Mesh, points: Floats, segments: Ints) -> Floats:
     by_area = np.argsort(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])[::-1]
     _, first = np.unique(part[by_area], return_index=True)
     centres = p[by_area[first]].mean(axis=1)
-    out: Floats = centres[containing_triangles(mesh.points, mesh.triangles, centres) < 0]
-    return out
+    return centres[containing_triangles(mesh.points, mesh.triangles, centres) < 0]
 
 
 def region_points(mesh: Mesh, edges: Ints) -> dict[int, Floats]:
@@ -91,15 +88,13 @@ def parts_between(triangles: Ints, walls: Ints, n_points: int) -> NDArray[np.int
     open_ = same[~np.isin(keys[same], edge_keys(walls[:, 0], walls[:, 1], n_points))]
     links = owner[open_], owner[open_ + 1]
     graph = coo_array((np.ones(len(open_)), links), shape=(len(triangles), len(triangles)))
-    part: NDArray[np.intp] = connected_components(graph, directed=False)[1]
-    return part
+    return connected_components(graph, directed=False)[1]
 
 
 def regions_beside(triangles: Ints, regions: Ints, edges: Ints, n_points: int) -> Ints:
     """The regions on the left and right of each edge, (e, 2), `OUTSIDE` for the outside."""
     beside = triangles_beside(triangles, edges, n_points)
-    out: Ints = np.append(regions.astype(np.int64), OUTSIDE)[np.stack(beside, axis=1)]
-    return out
+    return np.append(regions.astype(np.int64), OUTSIDE)[np.stack(beside, axis=1)]
 
 
 def triangles_beside(triangles: Ints, edges: Ints, n_points: int) -> tuple[Ints, Ints]:

@@ -13,14 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh.boundary.path_cuts import RunParts, turns_between
+from adaptmesh.types import Floats, Index, Ints
 
 from .domain import Domain
 from .paths import points_on
 from .periodic import Motion, frozen_pieces, images_on
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Index = NDArray[np.integer]
 
 
 @dataclass(frozen=True)

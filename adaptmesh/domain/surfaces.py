@@ -6,13 +6,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats
 
 from .paths import places_of
-
-Floats = NDArray[np.float64]
 
 
 def seeds_of(

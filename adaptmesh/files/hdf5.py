@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from adaptmesh.errors import FormatError
-from adaptmesh.mesh.incoming import Array
+from adaptmesh.types import Array
 
 from .bounded import Allowance, refuse_longer
 from .located import refusing

@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from adaptmesh.errors import FormatError
-from adaptmesh.mesh.incoming import Array
+from adaptmesh.types import Array
 
 from .bounded import Allowance
 from .located import located, refusing
@@ -78,5 +78,4 @@ def _array(content: bytes, info: zipfile.ZipInfo) -> Array:
             raise FormatError(f"has {len(content) - begin} bytes for {dtype} of shape {shape}")
         values = np.frombuffer(content, dtype, math.prod(shape), begin)
         order: Literal["F", "C"] = "F" if header[2] == b"True" else "C"
-        out: Array = values.reshape(shape, order=order).copy(order=order)
-        return out
+        return values.reshape(shape, order=order).copy(order=order)

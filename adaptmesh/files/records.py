@@ -14,12 +14,12 @@ from itertools import chain
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from adaptmesh.errors import FormatError
+from adaptmesh.types import Array
 
 Column = tuple[str, int]
-Array = NDArray[Any]
 
 _LONGEST_NUMBER = 64
 _LONGEST_ROW = 1 << 30  # bytes

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import Fault
+from adaptmesh._core import delaunay as core_delaunay
 from adaptmesh.errors import DomainError
 
 __all__ = ["delaunay"]
@@ -59,8 +60,8 @@ def delaunay(points: ArrayLike) -> NDArray[np.int32]:
     """
     array = _checked(points)
     try:
-        triangles, _ = _core.delaunay(array)
-    except _core.Fault as fault:
+        triangles, _ = core_delaunay(array)
+    except Fault as fault:
         # Everything else was checked above.
         low, high = array.min(axis=0), array.max(axis=0)
         raise DomainError(
@@ -68,8 +69,7 @@ def delaunay(points: ArrayLike) -> NDArray[np.int32]:
             f"{low[1]:.17g}) and ({high[0]:.17g}, {high[1]:.17g}); "
             "add a point off the line."
         ) from fault
-    result: NDArray[np.int32] = triangles
-    return result
+    return triangles
 
 
 def _checked(points: ArrayLike) -> NDArray[np.float64]:

@@ -6,16 +6,16 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import metrics
-from adaptmesh import _core
+from adaptmesh._core import Fault, Mesher
 from adaptmesh.boundary.discretise import Outline, cut_outline
 from adaptmesh.boundary.vertex_limit import Budget, Progress
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.messages import too_near_text
 from adaptmesh.errors import DomainError, MetricError
 from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.types import Ints
 from metrics import ControlSpace
 
 from .optimisation import Optimisation, Settling, optimise, settle
@@ -29,8 +29,6 @@ from .placement import (
     place_along_edges,
 )
 from .prediction import check_is_domain, predict
-
-Ints = NDArray[np.int32]
 
 # The points of the domain are triangulated for the Euclidean plane; under a slanted and strongly
 # anisotropic metric it can take many passes of swaps until that is metric Delaunay. Most need two.
@@ -131,7 +129,7 @@ def graded_within_budget(
     return field.graded(domain, gradation)
 
 
-def triangulate_outline(domain: Domain, outline: Outline) -> _core.Mesher:
+def triangulate_outline(domain: Domain, outline: Outline) -> Mesher:
     """The constrained triangulation of the outline's points, then of its cuts: metric Delaunay.
 
     A cut of a curve is off the chord that it divides, and can be hidden from it by triangles that
@@ -140,7 +138,7 @@ def triangulate_outline(domain: Domain, outline: Outline) -> _core.Mesher:
     """
     while True:
         try:
-            mesher = _core.Mesher(
+            mesher = Mesher(
                 outline.points,
                 outline.tensors,
                 outline.segments,
@@ -148,7 +146,7 @@ def triangulate_outline(domain: Domain, outline: Outline) -> _core.Mesher:
                 domain.seeds,
                 domain.nesting,
             )
-        except _core.Fault as fault:
+        except Fault as fault:
             raise DomainError(too_near_text(domain, outline, *fault.args)) from None
         mesher.swap(most_passes=OUTLINE_SWAPS)
         made = mesher.cut_outline(
@@ -164,7 +162,7 @@ def triangulate_outline(domain: Domain, outline: Outline) -> _core.Mesher:
         outline = mended
 
 
-def finished_mesh(domain: Domain, mesher: _core.Mesher, regions: Ints) -> Mesh:
+def finished_mesh(domain: Domain, mesher: Mesher, regions: Ints) -> Mesh:
     edges, segment = mesher.constrained_edges()
     return Mesh(
         points=mesher.points(),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from adaptmesh import _core
+from adaptmesh._core import Mesher, Settler
 from adaptmesh.boundary.edge_lengths import measure_edges, measure_fresh_edges, refresh
 from adaptmesh.boundary.vertex_limit import Budget, Progress
 from metrics import ControlSpace
@@ -73,7 +73,7 @@ class Settling:
 
 
 def optimise(
-    mesher: _core.Mesher,
+    mesher: Mesher,
     field: ControlSpace,
     options: Optimisation,
     budget: Budget,
@@ -103,7 +103,7 @@ def optimise(
     mesher.swap_worst(options.swap_below)
 
 
-def settle(mesher: _core.Mesher, field: ControlSpace, options: Settling, budget: Budget) -> None:
+def settle(mesher: Mesher, field: ControlSpace, options: Settling, budget: Budget) -> None:
     """Change what is still off where the change, measured with the exact metric, is better."""
     measure_fresh_edges(mesher, field, uncut_below=np.inf)
     settler = mesher.settler(options.least_quality)
@@ -122,9 +122,7 @@ def settle(mesher: _core.Mesher, field: ControlSpace, options: Settling, budget:
             return
 
 
-def settle_sites(
-    mesher: _core.Mesher, settler: _core.Settler, field: ControlSpace, step: float = 0.0
-) -> int:
+def settle_sites(mesher: Mesher, settler: Settler, field: ControlSpace, step: float = 0.0) -> int:
     """Measure the sites that were found, and what might take their place; how many changed."""
     measure_edges(settler.sampler, field)
     mesher.set_kernels(settler, field(mesher.propose(settler, step)))

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import Mesher
 from adaptmesh.boundary.edge_lengths import measure_fresh_edges, refresh
 from adaptmesh.boundary.vertex_limit import Budget, Progress
+from adaptmesh.types import Floats
 from metrics import ControlSpace
-
-Floats = NDArray[np.float64]
 
 PLACEMENTS = ("front", "edges")
 
@@ -64,7 +62,7 @@ class EdgePlacement:
 
 
 def place_ahead_of_front(
-    mesher: _core.Mesher,
+    mesher: Mesher,
     field: ControlSpace,
     options: FrontPlacement,
     budget: Budget,
@@ -83,7 +81,7 @@ def place_ahead_of_front(
 
 
 def place_along_edges(
-    mesher: _core.Mesher,
+    mesher: Mesher,
     field: ControlSpace,
     options: EdgePlacement,
     budget: Budget,
@@ -127,7 +125,7 @@ class Samples(ControlSpace):
         return np.concatenate(self._points), np.concatenate(self._tensors)
 
 
-def insert_what_was_missed(mesher: _core.Mesher, samples: Samples) -> int:
+def insert_what_was_missed(mesher: Mesher, samples: Samples) -> int:
     """Put points where the prediction saw the metric far finer than the mesh knows it.
 
     A layer thinner than an edge can pass between all the places where edges were measured; the

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 import metrics
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.inputs import Floats, Ints
 from adaptmesh.domain.paths import points_on
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats, Ints
 from metrics import ControlSpace, tensor
 
 # A chord is followed more closely while its curve is off it by more than this, in metric length,
@@ -101,5 +101,4 @@ def _is_coarse(points: Floats, tensors: Floats, chord: Ints, middle: Ints) -> ND
     height = points[middle] - 0.5 * (points[a] + points[b])
     off = np.max([tensor.lengths(tensors[v], tensors[v], height) for v in (a, b, middle)], axis=0)
     length = tensor.lengths(tensors[a], tensors[b], points[b] - points[a])
-    out: NDArray[np.bool_] = (off > OFF_CHORD) & (length > 1)
-    return out
+    return (off > OFF_CHORD) & (length > 1)

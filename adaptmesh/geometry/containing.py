@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh import _core
-
-Floats = NDArray[np.float64]
+from adaptmesh._core import orient2d
+from adaptmesh.types import Floats
 
 
 def containing_triangles(
@@ -26,7 +25,7 @@ def containing_triangles(
     inside = np.ones(len(place), bool)
     for i, j in ((0, 1), (1, 2), (2, 0)):
         start, end = corners[triangle, i], corners[triangle, j]
-        inside &= _core.orient2d(start, end, x) >= 0
+        inside &= orient2d(start, end, x) >= 0
     out = np.full(len(places), len(triangles), np.intp)
     np.minimum.at(out, place[inside], triangle[inside])
     return np.where(out == len(triangles), -1, out)

@@ -5,19 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh import _core
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-Index = NDArray[np.integer]
+from adaptmesh._core import orient2d
+from adaptmesh.types import Bools, Floats, Index, Int64s
 
 
-def meet(points: Floats, e: Index, f: Index) -> Ints:
+def meet(points: Floats, e: Index, f: Index) -> Int64s:
     """Which of the pairs of edges e (k, 2) and f (k, 2) have more in common than an end."""
 
     def orient(a: Index, b: Index, c: Index) -> NDArray[np.int8]:
-        return np.asarray(_core.orient2d(points[a], points[b], points[c]))
+        return np.asarray(orient2d(points[a], points[b], points[c]))
 
     kept = np.arange(len(e))
     for one, other in ((e, f), (f, e)):  # keep pairs of which neither lies beside the other

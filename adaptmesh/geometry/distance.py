@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from adaptmesh.types import Floats, Int64s
 
 
-def first_of_equal(points: Floats) -> Ints:
+def first_of_equal(points: Floats) -> Int64s:
     """For each point the number of the first that is equal to it."""
     order = np.lexsort((points[:, 1], points[:, 0]))  # stable: equal points by their number
     p = points[order]
@@ -42,7 +40,7 @@ def near_points(points: Floats, tolerance: float) -> Iterator[tuple[int, int]]:
                 yield int(kept[j]), int(kept[i])
 
 
-def _others(first: Ints) -> tuple[Ints, Ints]:
+def _others(first: Int64s) -> tuple[Int64s, Int64s]:
     """Points that are equal to an earlier one, and that one."""
     again = np.flatnonzero(first != np.arange(len(first)))
     return again, first[again]
@@ -65,5 +63,4 @@ def meeting(first: Floats, second: Floats) -> Floats:
     along = r[:, 0] * w[:, 1] - r[:, 1] * w[:, 0]
     flat = across == 0  # it crosses by exact signs, but not in doubles
     t = np.clip(np.where(flat, 0.5, along / np.where(flat, 1.0, across)), 0.0, 1.0)
-    out: Floats = np.where((t < 0.5)[:, None], a + t[:, None] * u, b - (1.0 - t)[:, None] * u)
-    return out
+    return np.where((t < 0.5)[:, None], a + t[:, None] * u, b - (1.0 - t)[:, None] * u)

@@ -31,9 +31,10 @@ from adaptmesh.files.whole import read_bytes, replace_files
 from adaptmesh.io.meshes.outlines import outline_of
 from adaptmesh.io.meshes.required import required_items
 from adaptmesh.io.meshes.second_order import with_corners_only
-from adaptmesh.mesh.incoming import Array, fields_of, mesh_of
+from adaptmesh.mesh.incoming import fields_of, mesh_of
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.periodic_sides import periodic_rows
+from adaptmesh.types import Array
 from metrics.control import Metric
 
 from .formats import FORMATS, Format, format_of

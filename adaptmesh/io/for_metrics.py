@@ -9,7 +9,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from adaptmesh.files.located import located, only_our_errors
-from adaptmesh.mesh.incoming import Array, fields_of, mesh_of
+from adaptmesh.mesh.incoming import fields_of, mesh_of
+from adaptmesh.types import Array
 
 from .formats import format_of
 

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from adaptmesh.errors import FormatError
-from adaptmesh.mesh.incoming import Array, Content, check_coordinates, check_vertices
+from adaptmesh.mesh.incoming import Content, check_coordinates, check_vertices
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.periodic_sides import periodic_rows
+from adaptmesh.types import Array
 from metrics import tensor
 from metrics.control import ControlSpace, Metric, as_control_space
 

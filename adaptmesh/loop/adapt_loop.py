@@ -16,7 +16,7 @@ import numpy as np
 from adaptmesh.adapt.adapt import adapt
 from adaptmesh.checks import expect_function
 from adaptmesh.domain.domain import Domain
-from adaptmesh.errors import BudgetError, LoopError, LoopInterrupted, MetricError
+from adaptmesh.errors import BudgetError, MetricError
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.transfer.transfer import METHODS
 from adaptmesh.transfer.transfer import transfer as transferred
@@ -24,6 +24,7 @@ from adaptmesh.value import FrozenMapping
 from metrics import Background, Limits, nodal_lengths
 
 from . import history_files as files
+from .errors import LoopError, LoopInterrupted
 from .history import History, Iteration, PathLike, Seconds, Snapshot
 from .option_text import option_as_text
 from .solution import Solved, as_solved, space_of

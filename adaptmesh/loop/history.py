@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from adaptmesh.errors import FormatError
 from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.types import Floats
 from adaptmesh.value import Value
 
 from .solution import Solved
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
     from adaptmesh.domain.domain import Domain
 
-Floats = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
 
 

@@ -7,16 +7,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.errors import MetricError
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.transfer.spaces import as_field, sizes
+from adaptmesh.types import Array, Floats
 from adaptmesh.value import FrozenMapping, Value
 from metrics import ControlSpace, tensor
-
-Floats = NDArray[np.float64]
-Array = NDArray[Any]
 
 UNNAMED = "solution"  # the name of a field that is returned as a bare array
 UNNAMED_ERROR = "error"  # the name of an error that is returned as a bare number

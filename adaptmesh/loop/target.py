@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.checks import expect_number
 from adaptmesh.errors import MetricError
 from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.types import Array, Floats
 from metrics import Curvature, Limits, normalised
 from metrics.from_solution.normalise import check_combination, check_norm
 from metrics.from_solution.optimal_metric import optimal_tensors
@@ -19,9 +19,7 @@ from metrics.measure.nodal import border_edges, vertices_of
 
 from .error_control import next_count
 from .history import Iteration
-from .solution import Array, Solved, space_of
-
-Floats = NDArray[np.float64]
+from .solution import Solved, space_of
 
 # Meshes come within a few per cent of the number of vertices predicted, and a budget is not
 # exceeded: this much of it is asked for.

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from adaptmesh.checks import expect_number
 from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.types import Floats
 from metrics import Background, Curvature, Limits, absolute, combined
 from metrics.from_solution.normalise import check_combination, check_norm
 from metrics.from_solution.optimal_metric import optimal_tensors
@@ -28,7 +29,6 @@ from metrics.measure.nodal import predicted_vertices
 
 from .target import check_fields, check_target, is_constant, refuse_beyond_range, steering_fields
 
-Floats = NDArray[np.float64]
 Hessians = Mapping[str, Floats]
 """The absolute Hessian (n, 3) of each field that steers."""
 

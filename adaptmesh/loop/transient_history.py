@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.types import Floats
 from adaptmesh.value import Value
 
 from .history import PathLike, Seconds
@@ -18,7 +19,6 @@ from .history import PathLike, Seconds
 if TYPE_CHECKING:
     from adaptmesh.domain.domain import Domain
 
-Floats = NDArray[np.float64]
 Fields = Mapping[str, NDArray[Any]]
 
 

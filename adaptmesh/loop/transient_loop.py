@@ -24,19 +24,20 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from adaptmesh.adapt.adapt import adapt
 from adaptmesh.checks import expect_function, expect_whole
-from adaptmesh.errors import TransientError, TransientInterrupted
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.transfer.transfer import METHODS
 from adaptmesh.transfer.transfer import transfer as transferred
+from adaptmesh.types import Floats
 from adaptmesh.value import FrozenMapping
 from metrics import Background, Limits
 
 from . import transient_files as files
 from .adapt_loop import Clock, largest_size, refuse_other_mesh, with_domain
+from .errors import TransientError, TransientInterrupted
 from .history import PathLike
 from .history_files import refuse_history
 from .option_text import option_as_text
@@ -44,8 +45,6 @@ from .solution import Solved, as_solved, space_of
 from .target import check_reachable
 from .target_in_time import SteeringInTime
 from .transient_history import Interval, TransientHistory
-
-Floats = NDArray[np.float64]
 
 ROUNDING = 1e-9
 """Share of an interval by which the last time may miss its end, as sums of steps do."""

@@ -7,11 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import triangle_areas as core_triangle_areas
 from adaptmesh.domain.inputs import is_level
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
+from adaptmesh.types import Floats, Ints
 
 
 def plane_points(points: ArrayLike | None) -> NDArray[Any]:
@@ -84,5 +82,5 @@ def triangle_areas(corners: Floats) -> Floats:
         lost = np.abs(out) < np.abs(first) / 8 + np.abs(second) / 8
     lost |= ~np.isfinite(out) & np.isfinite(corners).all(axis=(1, 2))
     if lost.any():
-        out[lost] = _core.triangle_areas(corners[lost].reshape(-1, 6))
+        out[lost] = core_triangle_areas(corners[lost].reshape(-1, 6))
     return out

@@ -14,10 +14,8 @@ A vertex is off the line through its neighbours along the border, to the left or
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
+from adaptmesh.types import Floats, Ints
 
 LARGEST = 4e-6
 """Vertices farther off than this share of the extent are corners. Float32 is a tenth of that."""
@@ -96,5 +94,4 @@ def _left_of(p: Floats, a: Floats, b: Floats) -> Floats:
     d, w = b - a, p - a
     length = np.hypot(*d.T)
     cross = d[:, 0] * w[:, 1] - d[:, 1] * w[:, 0]
-    out: Floats = np.divide(cross, length, out=np.full(len(p), np.inf), where=length > 0)
-    return out
+    return np.divide(cross, length, out=np.full(len(p), np.inf), where=length > 0)

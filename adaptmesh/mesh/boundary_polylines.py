@@ -18,12 +18,9 @@ from scipy.sparse.csgraph import connected_components
 from adaptmesh.domain.projection import places_on_runs, tolerance_of
 from adaptmesh.domain.side import Lines
 from adaptmesh.mesh.validate.subject import edge_keys
+from adaptmesh.types import Floats, Index, Ints
 
 from .mesh import Mesh
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Index = NDArray[np.integer]
 
 
 @dataclass(frozen=True)
@@ -117,8 +114,7 @@ def vertices_at(mesh: Mesh, points: Floats) -> Ints:
     group = group.ravel()
     vertex = np.full(group.max() + 1, -1, np.int32)
     vertex[group[: len(mesh.points)]] = np.arange(len(mesh.points))
-    out: Ints = vertex[group[len(mesh.points) :]]
-    return out
+    return vertex[group[len(mesh.points) :]]
 
 
 def _regions_leak(mesh: Mesh) -> bool:
@@ -140,8 +136,7 @@ def _rows(edges: Ints, number: Index) -> Index:
     shared = edges[edge, side]
     graph = coo_array((np.ones(len(edge)), (edge, e + shared)), shape=(e + n, e + n))
     label = connected_components(graph, directed=False)[1][:e]
-    rows: Index = np.unique(label, return_inverse=True)[1].ravel()
-    return rows
+    return np.unique(label, return_inverse=True)[1].ravel()
 
 
 def _inner(mesh: Mesh, number: Index, row: Index, lines: Lines) -> Inner:

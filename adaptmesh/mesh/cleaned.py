@@ -9,15 +9,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import orient2d
 from adaptmesh.arrangement.numbering import unique_edges
 from adaptmesh.domain.inputs import name_of_number
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.distance import near_points
+from adaptmesh.types import Int64s
 
 from .mesh import Mesh
-
-Ints = NDArray[np.int64]
 
 
 class OnceEach(NamedTuple):
@@ -33,9 +32,9 @@ class OnceEach(NamedTuple):
         The edge of each row.
     """
 
-    rows: Ints
-    tags: Ints
-    edge: Ints
+    rows: Int64s
+    tags: Int64s
+    edge: Int64s
 
 
 def edges_once(
@@ -134,13 +133,13 @@ def cleaned_mesh(mesh: Mesh, merge: float | None) -> Mesh:
     return with_edges_once(new)
 
 
-def _refuse_collapsed(mesh: Mesh, triangles: Ints, merge: float | None) -> None:
+def _refuse_collapsed(mesh: Mesh, triangles: Int64s, merge: float | None) -> None:
     """Refuse to merge vertices of one triangle, or so that a triangle is turned over."""
     if merge is None:
         return
     twice = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)
     a, b, c = (np.ascontiguousarray(mesh.points[v]) for v in triangles.T)
-    bad = np.flatnonzero(twice | (_core.orient2d(a, b, c) <= 0))
+    bad = np.flatnonzero(twice | (orient2d(a, b, c) <= 0))
     if len(bad):
         i = int(bad[0])
         place = tuple(mesh.points[mesh.triangles[i]].mean(axis=0).tolist())

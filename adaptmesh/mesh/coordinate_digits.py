@@ -19,10 +19,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
+from adaptmesh.types import Floats
 
 EPS = float(np.finfo(float).eps)
 

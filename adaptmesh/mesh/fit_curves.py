@@ -12,12 +12,10 @@ import itertools
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.curves import Curve, Line, Spline
 from adaptmesh.errors import DomainError
-
-Floats = NDArray[np.float64]
+from adaptmesh.types import Floats
 
 SAGITTA = 2
 """Pieces of a smooth curve that are straight to the tolerance are off it by hardly more than it."""
@@ -83,8 +81,7 @@ def _sagittas(p: Floats, ring: bool) -> Floats:
         bend[0], at_end[-1] = at_end[0], bend[-1]
         if len(bend) == 1:
             return np.full(1, np.inf)
-    out: Floats = length**2 * np.minimum(bend, at_end) / 8
-    return out
+    return length**2 * np.minimum(bend, at_end) / 8
 
 
 def _turns(p: Floats) -> Floats:
@@ -92,5 +89,4 @@ def _turns(p: Floats) -> Floats:
     after = np.diff(p, axis=0)
     before = np.roll(after, 1, axis=0)
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    out: Floats = np.degrees(np.abs(np.arctan2(cross, (before * after).sum(axis=1))))
-    return out
+    return np.degrees(np.abs(np.arctan2(cross, (before * after).sum(axis=1))))

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import orient2d
 from adaptmesh.domain.inputs import LARGEST, is_level
 from adaptmesh.errors import FormatError
+from adaptmesh.types import Array
 
 from .cleaned import edges_once
 from .mesh import Mesh
 from .periodic_sides import Rows, periodic_sides
-
-Array = NDArray[Any]
 
 _INT32 = np.iinfo(np.int32)
 
@@ -165,13 +162,12 @@ def planar(points: Array) -> Array:
                 f"point {off} is {tuple(points[off].tolist())}: z is not {z[0]:g}, as that of "
                 "point 0. Only plane meshes can be read; project or rotate the surface onto z = 0"
             )
-    out: Array = points[:, :2]
-    return out
+    return points[:, :2]
 
 
 def _counter_clockwise(points: Array, triangles: Array) -> Array:
     points = np.ascontiguousarray(points)
-    signs = np.asarray(_core.orient2d(*(points[corner] for corner in triangles.T)))
+    signs = np.asarray(orient2d(*(points[corner] for corner in triangles.T)))
     flat = np.flatnonzero(signs == 0)
     if len(flat):
         t = flat[0]
@@ -200,8 +196,7 @@ def _refuse_duplicates(kind: str, cells: Array) -> None:
 
 def _edges_are_sides(edges: Array, triangles: Array, count: int) -> None:
     def keys(pairs: Array) -> Array:
-        out: Array = pairs.min(axis=1) * count + pairs.max(axis=1)
-        return out
+        return pairs.min(axis=1) * count + pairs.max(axis=1)
 
     sides = np.concatenate([triangles[:, [1, 2]], triangles[:, [2, 0]], triangles[:, [0, 1]]])
     known = np.sort(keys(sides))

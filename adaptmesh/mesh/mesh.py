@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from adaptmesh.types import Floats, Ints
 from adaptmesh.value import FrozenMapping, Value
 from metrics.measure.exact import mesh_edges
 
@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from adaptmesh.domain.naming import Chosen
     from adaptmesh.domain.periodic import PeriodicPair, PeriodicSides
     from adaptmesh.mesh.validate.validate import Validity
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -122,8 +119,7 @@ class Mesh(Value):
 
     def edges_named(self, name: str) -> Ints:
         """The constrained edges that bear a name, (j, 2)."""
-        out: Ints = self.edges[self.edge_tags == _look_up(self.names, name, "edge")]
-        return out
+        return self.edges[self.edge_tags == _look_up(self.names, name, "edge")]
 
     def triangles_in(self, region: str) -> Ints:
         """Numbers of the triangles of a named region, (j,)."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import ByLabel
@@ -15,13 +14,11 @@ from adaptmesh.domain.seeds import triangles_beside
 from adaptmesh.domain.side import Lines
 from adaptmesh.errors import DomainError
 from adaptmesh.mesh.validate.subject import edge_keys
+from adaptmesh.types import Ints
 
 from .boundary_polylines import find_chains
 from .mesh import Mesh
 from .to_domain import with_interfaces
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 
 def mesh_with_names(mesh: Mesh, names: ByLabel[Chosen]) -> Mesh:

@@ -6,15 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats, Ints
 
 from .bend_noise import DOUBTS, bend_noise
 from .coordinate_digits import digits_of
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 EXACT = 1e-12
 """Vertices nearer than this share of the extent of a mesh to a straight line lie on it, anyway."""
@@ -148,5 +145,4 @@ def _distances(p: Floats, a: Floats, b: Floats) -> Floats:
         return np.hypot(w[:, 0], w[:, 1])
     along = (w @ d) / norm
     beyond = np.maximum(np.maximum(-along, along - norm), 0.0)
-    out: Floats = np.hypot(np.abs(w[:, 0] * d[1] - w[:, 1] * d[0]) / norm, beyond)
-    return out
+    return np.hypot(np.abs(w[:, 0] * d[1] - w[:, 1] * d[0]) / norm, beyond)

@@ -15,15 +15,13 @@ from adaptmesh.domain.periodic_corners import domain_with_pair
 from adaptmesh.domain.seeds import hole_points, region_points, regions_beside
 from adaptmesh.errors import DomainError
 from adaptmesh.mesh.validate.subject import Finding, Subject, edge_keys
+from adaptmesh.types import Ints
 
 from .cleaned import with_edges_once
 from .fit_curves import smooth_curves
 from .mesh import Mesh
 from .straight_sides import Straightness, needed_corners
 from .validate import local
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 
 def domain_of_mesh(

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 import metrics
 from adaptmesh.text.places import place_text
+from adaptmesh.types import Floats
 from metrics import ControlSpace
 from metrics.measure.exact import edge_lengths, mesh_edges
 
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Cause", "Reason", "Reasons"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.integer]
 
 SAMPLES = 33  # along an edge
 HALVINGS = 12  # of the interval between two samples in which a jump is looked for
@@ -198,8 +197,7 @@ def _changes(logs: Floats, others: Floats) -> Floats:
     """Logarithms of the largest ratio of sizes, to first order, between two rows of log-metrics."""
     d = logs - others
     mean, deviation = (d[:, 0] + d[:, 2]) / 2, np.hypot((d[:, 0] - d[:, 2]) / 2, d[:, 1])
-    out: Floats = 0.5 * (np.abs(mean) + deviation)
-    return out
+    return 0.5 * (np.abs(mean) + deviation)
 
 
 def _angle(m: Floats, u: Floats, w: Floats) -> float:

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.adapt.adapt import control_space_on
 from adaptmesh.mesh.to_domain import check_is_mesh
 from adaptmesh.mesh.validate.validate import InvalidMeshError
+from adaptmesh.types import Floats, Index
 from adaptmesh.value import FrozenMapping, Value
 from metrics.measure.exact import edge_lengths, mesh_edges, metric_areas
 
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Histogram", "Report", "WorstEdge", "WorstTriangle", "measure"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.integer]
 Point = tuple[float, float]
 
 # A unit edge is as long as these, both included whatever the rounding: a grid of squares of side
@@ -242,8 +240,7 @@ def qualities(lengths: Floats, areas: Floats) -> Floats:
     1 for the unit equilateral triangle. Where the metric jumps it may come out above 1, and is cut.
     """
     squares = (lengths**2).sum(axis=1)
-    out: Floats = np.minimum(4 * 3**0.5 * areas / np.where(squares > 0, squares, np.inf), 1.0)
-    return out
+    return np.minimum(4 * 3**0.5 * areas / np.where(squares > 0, squares, np.inf), 1.0)
 
 
 def ratio_to_unit(lengths: Floats) -> Floats:
@@ -282,7 +279,7 @@ def check_measurable(mesh: Mesh) -> None:
 
 
 def edge_entries(
-    mesh: Mesh, edges: Ints, lengths: Floats, chosen: Ints, reasons: Reasons
+    mesh: Mesh, edges: Index, lengths: Floats, chosen: Index, reasons: Reasons
 ) -> tuple[WorstEdge, ...]:
     """Some of the edges, with the reason why they are not unit."""
     entries = []
@@ -294,7 +291,7 @@ def edge_entries(
 
 
 def triangle_entries(
-    mesh: Mesh, quality: Floats, chosen: Ints, reasons: Reasons, below: float = BAD_QUALITY
+    mesh: Mesh, quality: Floats, chosen: Index, reasons: Reasons, below: float = BAD_QUALITY
 ) -> tuple[WorstTriangle, ...]:
     """Some of the triangles, with the reason why they are of lesser quality than `below`."""
     entries = []
@@ -305,7 +302,7 @@ def triangle_entries(
     return tuple(entries)
 
 
-def _smallest(values: Floats) -> Ints:
+def _smallest(values: Floats) -> Index:
     """Numbers of the few smallest values, smallest first, equal ones in their order."""
     few = np.argpartition(values, min(WORST, len(values) - 1))[:WORST]
     order = np.lexsort((few, values[few]))

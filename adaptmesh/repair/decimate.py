@@ -5,12 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from adaptmesh import _core
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from adaptmesh._core import decimate as core_decimate
+from adaptmesh.types import Floats, Int64s
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,13 +26,15 @@ class Decimated:
         Edge i passes by the points ``passed[starts[i]:starts[i + 1]]``.
     """
 
-    edges: Ints
-    source: Ints
-    passed: Ints
-    starts: Ints
+    edges: Int64s
+    source: Int64s
+    passed: Int64s
+    starts: Int64s
 
 
-def decimate(points: Floats, tensors: Floats, edges: Ints, kind: Ints, share: float) -> Decimated:
+def decimate(
+    points: Floats, tensors: Floats, edges: Int64s, kind: Int64s, share: float
+) -> Decimated:
     """Leave out points between two edges of one kind.
 
     Parameters
@@ -52,7 +51,7 @@ def decimate(points: Floats, tensors: Floats, edges: Ints, kind: Ints, share: fl
         The most that a point may lie off the edge that replaces its own, as a length in the metric
         at that point. Only ends of edges shorter than 1 in the metric are left out.
     """
-    left, source, passed, starts = _core.decimate(
+    left, source, passed, starts = core_decimate(
         np.ascontiguousarray(points),
         np.ascontiguousarray(tensors),
         edges.astype(np.int32),
@@ -64,7 +63,7 @@ def decimate(points: Floats, tensors: Floats, edges: Ints, kind: Ints, share: fl
     )
 
 
-def turned(edges: Ints, left: Ints, right: Ints) -> tuple[Ints, Ints, Ints]:
+def turned(edges: Int64s, left: Int64s, right: Int64s) -> tuple[Int64s, Int64s, Int64s]:
     """Edges turned so that the lower number is on their left, and their sides then."""
     turn = left > right
     edges = np.where(turn[:, None], edges[:, ::-1], edges)

@@ -8,13 +8,10 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.arrangement import Faces
-from adaptmesh.domain.inputs import Floats, Inside
-
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
+from adaptmesh.domain.inputs import Inside
+from adaptmesh.types import Bools, Floats
 
 
 class Lines:
@@ -59,8 +56,7 @@ class Lines:
     @cached_property
     def is_loose(self) -> Bools:
         """Edges with the same face on both sides, outside of the domain."""
-        out: Bools = (self.left == self.right) & ~self.is_solid[self.left]
-        return out
+        return (self.left == self.right) & ~self.is_solid[self.left]
 
     @cached_property
     def is_in_hole(self) -> Bools:
@@ -82,5 +78,4 @@ class Lines:
 
     def contains(self, places: Floats) -> Bools:
         """Which of the places are in the domain or on its border."""
-        out: Bools = self.is_solid[self.faces.at(places)]
-        return out
+        return self.is_solid[self.faces.at(places)]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.arrangement import (
     Noded,
@@ -30,12 +29,9 @@ from adaptmesh.domain.inputs import (
 from adaptmesh.domain.naming import split_names
 from adaptmesh.domain.outline import Outline
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Bools, Floats, Int64s
 
 from .inside_lines import Lines
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 def repaired_domain_of_segments(
@@ -77,7 +73,7 @@ def repaired_domain_of_segments(
     return domain, Repairs(tuple(log), tolerance, drift)
 
 
-def _segments_without_length(points: Floats, segments: Ints) -> list[Repair]:
+def _segments_without_length(points: Floats, segments: Int64s) -> list[Repair]:
     ends = points[segments]
     log = []
     for i in np.flatnonzero((ends[:, 0] == ends[:, 1]).all(axis=1)).tolist():
@@ -87,7 +83,7 @@ def _segments_without_length(points: Floats, segments: Ints) -> list[Repair]:
     return log
 
 
-def _tags(edge: Ints, tag: Ints, count: int) -> Ints:
+def _tags(edge: Int64s, tag: Int64s, count: int) -> Int64s:
     """For each edge the tag of the first of its segments that has one."""
     out = np.zeros(count, np.int64)
     named = np.flatnonzero(tag)[::-1]
@@ -97,10 +93,10 @@ def _tags(edge: Ints, tag: Ints, count: int) -> Ints:
 
 def _overlaps(
     noded: Noded,
-    edges: Ints,
-    edge: Ints,
-    edge_tags: Ints,
-    tags: Ints,
+    edges: Int64s,
+    edge: Int64s,
+    edge_tags: Int64s,
+    tags: Int64s,
     names: Mapping[str, int],
 ) -> list[Repair]:
     """Each pair of segments that have edges in common."""
@@ -126,7 +122,7 @@ def _overlaps(
     return log
 
 
-def _spikes(noded: Noded, edges: Ints, edge: Ints, lines: Lines, log: list[Repair]) -> Bools:
+def _spikes(noded: Noded, edges: Int64s, edge: Int64s, lines: Lines, log: list[Repair]) -> Bools:
     """Edges that were drawn more than once, and stick out of the domain."""
     doubled = np.bincount(edge, minlength=len(edges)) > 1
     spikes: Bools = doubled & lines.is_loose
@@ -137,7 +133,7 @@ def _spikes(noded: Noded, edges: Ints, edge: Ints, lines: Lines, log: list[Repai
     return spikes
 
 
-def _in_holes(noded: Noded, edges: Ints, lines: Lines, spikes: Bools, log: list[Repair]) -> Bools:
+def _in_holes(noded: Noded, edges: Int64s, lines: Lines, spikes: Bools, log: list[Repair]) -> Bools:
     """Edges in holes, or between two, that are no spikes."""
     lost = lines.is_in_hole & ~spikes
     for i in np.flatnonzero(lost).tolist():
@@ -147,13 +143,13 @@ def _in_holes(noded: Noded, edges: Ints, lines: Lines, spikes: Bools, log: list[
     return lost
 
 
-def _middle_and_length(noded: Noded, edge: Ints) -> tuple[tuple[float, float], float]:
+def _middle_and_length(noded: Noded, edge: Int64s) -> tuple[tuple[float, float], float]:
     p, q = noded.points[edge]
     x, y = (0.5 * (p + q)).tolist()
     return (x, y), float(np.hypot(*(q - p)))
 
 
-def _lone_points_inside(noded: Noded, edges: Ints, lines: Lines, log: list[Repair]) -> Ints:
+def _lone_points_inside(noded: Noded, edges: Int64s, lines: Lines, log: list[Repair]) -> Int64s:
     """The points of no segment that lie in the domain, or on an edge of it."""
     lone = np.setdiff1d(noded.lone, edges)
     is_inside = lines.contains(noded.points[lone])
@@ -164,7 +160,7 @@ def _lone_points_inside(noded: Noded, edges: Ints, lines: Lines, log: list[Repai
 
 
 def _lost_names(
-    names: Mapping[str, int], tags: Ints, left: Ints, points: Floats, segments: Ints
+    names: Mapping[str, int], tags: Int64s, left: Int64s, points: Floats, segments: Int64s
 ) -> list[Repair]:
     name_of = name_of_number(names, tags)
     log = []
@@ -197,9 +193,9 @@ def _check_seeds(inside: Inside, segments: Floats, reach: float) -> None:
 
 def _domain(
     noded: Noded,
-    edges: Ints,
-    edge_tags: Ints,
-    lone: Ints,
+    edges: Int64s,
+    edge_tags: Int64s,
+    lone: Int64s,
     outline: Outline,
     names: Mapping[str, int],
 ) -> Domain:

@@ -16,12 +16,10 @@ from adaptmesh.domain.inputs import labelled, rows_of_each
 from adaptmesh.domain.seeds import regions_beside
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.distance import distance
+from adaptmesh.types import Floats, Int64s
 
 from .decimate import Decimated, decimate, turned
 from .small_islands import small_loops
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SHARE = 0.1
 """How far a boundary may be moved, in units of the size asked for there."""
@@ -133,10 +131,10 @@ class _Lines:
     Directed so that the region on the left is not above that on the right.
     """
 
-    edges: Ints
-    tags: Ints
-    left: Ints
-    right: Ints
+    edges: Int64s
+    tags: Int64s
+    left: Int64s
+    right: Int64s
 
     @classmethod
     def of(cls, domain: Domain) -> _Lines:
@@ -147,7 +145,7 @@ class _Lines:
         return cls(edges, domain.segment_tags[domain.piece_segments].astype(np.int64), left, right)
 
     @property
-    def kind(self) -> Ints:
+    def kind(self) -> Int64s:
         """Edges of one kind have the same name and the same sides."""
         rows = np.stack([self.tags, self.left, self.right], axis=1)
         return np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1)
@@ -157,8 +155,8 @@ class _Lines:
 
 
 def _without_loops(
-    domain: Domain, lines: _Lines, lone: Ints, tensors: Floats, below: float, log: list[Repair]
-) -> tuple[_Lines, Ints]:
+    domain: Domain, lines: _Lines, lone: Int64s, tensors: Floats, below: float, log: list[Repair]
+) -> tuple[_Lines, Int64s]:
     """The lines without small loops, the points that stay, and a record of each loop."""
     used, edges = used_points(lines.edges)
     faces = find_faces(domain.points[used], edges)
@@ -209,7 +207,7 @@ def _record(points: Floats, result: Decimated, log: list[Repair]) -> float:
     return float(off.max(initial=0.0))
 
 
-def _rebuilt(domain: Domain, lines: _Lines, result: Decimated, lone: Ints) -> Domain:
+def _rebuilt(domain: Domain, lines: _Lines, result: Decimated, lone: Int64s) -> Domain:
     """The domain of the edges that are left, with the regions and names of before."""
     used, edges = used_points(result.edges)
     faces = find_faces(domain.points[used], edges)

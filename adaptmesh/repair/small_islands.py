@@ -6,13 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.arrangement import Faces
 from adaptmesh.arrangement.winding import walk
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from adaptmesh.types import Floats, Int64s
 
 
 @dataclass(frozen=True)
@@ -29,15 +26,15 @@ class Loop:
         The area of the faces, and the diagonal of the box around it.
     """
 
-    edges: Ints
-    faces: Ints
+    edges: Int64s
+    faces: Int64s
     place: tuple[float, float]
     area: float
     size: float
 
 
 def small_loops(
-    points: Floats, tensors: Floats, edges: Ints, faces: Faces, below: float
+    points: Floats, tensors: Floats, edges: Int64s, faces: Faces, below: float
 ) -> Iterator[Loop]:
     """The outermost loops that are smaller than a length in the metric.
 

@@ -29,7 +29,9 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from .spaces import Floats, Space
+from adaptmesh.types import Floats
+
+from .spaces import Space
 
 PASSES = 3
 """What a pass holds back, because the bounds were taken up, is tried again in the next."""
@@ -63,15 +65,13 @@ def _shares(fluxes: Floats, i: Any, j: Any, room_above: Floats, room_below: Floa
     size = len(room_above)
     up = _fraction(room_above, _sum(gains, i, size) + _sum(losses, j, size))
     down = _fraction(room_below, _sum(losses, i, size) + _sum(gains, j, size))
-    out: Floats = np.where(fluxes > 0, np.minimum(up[i], down[j]), np.minimum(down[i], up[j]))
-    return out
+    return np.where(fluxes > 0, np.minimum(up[i], down[j]), np.minimum(down[i], up[j]))
 
 
 def _fraction(room: Floats, wanted: Floats) -> Floats:
     """How much of what is wanted there is room for, from 0 to 1."""
     room = np.maximum(room, 0)
-    out: Floats = np.divide(room, wanted, out=np.ones_like(room), where=wanted > room)
-    return out
+    return np.divide(room, wanted, out=np.ones_like(room), where=wanted > room)
 
 
 def _net(fluxes: Floats, i: Any, j: Any, size: int) -> Floats:
@@ -79,8 +79,7 @@ def _net(fluxes: Floats, i: Any, j: Any, size: int) -> Floats:
 
 
 def _sum(values: Floats, at: Any, size: int) -> Floats:
-    out: Floats = np.stack([np.bincount(at, column, size) for column in values.T], axis=1)
-    return out
+    return np.stack([np.bincount(at, column, size) for column in values.T], axis=1)
 
 
 def _to_bernstein(space: Space) -> Any:
@@ -96,8 +95,7 @@ def _to_bernstein(space: Space) -> Any:
     rows = np.concatenate([np.arange(n), midpoints, ends[:, 0], ends[:, 1]])
     columns = np.concatenate([np.arange(n), midpoints, midpoints, midpoints])
     values = np.repeat([1, 0.5, 0.25], [n, len(ends), 2 * len(ends)])
-    out: Any = sp.csr_matrix((values, (rows, columns)), shape=(space.size, space.size))
-    return out
+    return sp.csr_matrix((values, (rows, columns)), shape=(space.size, space.size))
 
 
 def _bernstein_coefficients(space: Space, nodal: Floats) -> Floats:

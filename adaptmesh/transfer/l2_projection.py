@@ -13,7 +13,9 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from .spaces import Floats, Space
+from adaptmesh.types import Floats
+
+from .spaces import Space
 
 # Integrals of products of two basis functions over a triangle of area 1, by degree.
 MASSES = {
@@ -62,8 +64,7 @@ def solve_mass(matrix: Any, moments: Floats, degree: int) -> Floats:
     """
     diagonal = matrix.diagonal()[:, None]
     if degree == 0:
-        out: Floats = moments / diagonal
-        return out
+        return moments / diagonal
     u = _chebyshev(matrix, diagonal, moments, degree)
     enough = RESIDUAL * np.abs(moments / diagonal).max(axis=0, initial=0)
     for _ in range(ROUNDS - 1):

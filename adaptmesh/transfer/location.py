@@ -7,11 +7,10 @@ from numbers import Real
 
 import numpy as np
 
-from adaptmesh import _core
+from adaptmesh._core import Locator
 from adaptmesh.errors import TransferError
 from adaptmesh.mesh.mesh import Mesh
-
-from .spaces import Floats, Ints
+from adaptmesh.types import Floats, Ints
 
 OUTSIDE = 0.25
 """How far outside of the old mesh a place may be, relative to the longest edge beside it.
@@ -34,7 +33,7 @@ class Located:
 
     mesh: Mesh
     which: str
-    locator: _core.Locator
+    locator: Locator
 
 
 def located(mesh: Mesh, which: str) -> Located:
@@ -61,7 +60,7 @@ def located(mesh: Mesh, which: str) -> Located:
             f"{area:g}: {remedy}"
         )
     try:
-        return Located(mesh, which, _core.Locator(mesh.points, mesh.triangles))
+        return Located(mesh, which, Locator(mesh.points, mesh.triangles))
     except ValueError as error:
         raise TransferError(f"the {which} mesh is not one: {error}") from error
 
@@ -136,5 +135,4 @@ def check_distances(
 def longest_edges(mesh: Mesh) -> Floats:
     """Length of the longest edge of each triangle, (m,)."""
     p = mesh.points[mesh.triangles]
-    out: Floats = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2).max(axis=1)
-    return out
+    return np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2).max(axis=1)

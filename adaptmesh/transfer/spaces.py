@@ -17,10 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from adaptmesh.errors import TransferError
 from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.types import Floats, Ints
 from metrics import mesh_edges
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 DEGREES = {"P0": 0, "P1": 1, "P2": 2}
 
@@ -46,8 +44,7 @@ class Space:
         """Where the nodes are, (size, 2): for P0 the centroids."""
         points = self.mesh.points
         if self.name == "P0":
-            out: Floats = points[self.mesh.triangles].mean(axis=1)
-            return out
+            return points[self.mesh.triangles].mean(axis=1)
         if self.name == "P1":
             return points
         return np.concatenate([points, points[self.mesh.unique_edges].mean(axis=1)])

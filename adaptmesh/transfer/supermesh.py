@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import Overlay as core_Overlay
 from adaptmesh.errors import TransferError
 from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.types import Floats, Ints
 from adaptmesh.value import Value
 
 from .flux_limiter import bounds_on_triangles, limited
@@ -28,7 +29,7 @@ from .location import (
     check_triangles,
     located,
 )
-from .spaces import Field, Floats, Ints, Space, as_field, as_fields
+from .spaces import Field, Space, as_field, as_fields
 
 COVERED_TWICE = 1e-6
 """Parts of a triangle may exceed it by this share, far more than by rounding."""
@@ -85,9 +86,9 @@ class Overlay(Value):
         return located(self.old_mesh, "old"), located(self.new_mesh, "new")
 
     @cached_property
-    def _supermesh(self) -> _core.Overlay:
+    def _supermesh(self) -> core_Overlay:
         old, new = self._located
-        return _core.Overlay(old.locator, old.mesh.areas, new.locator, new.mesh.areas)
+        return core_Overlay(old.locator, old.mesh.areas, new.locator, new.mesh.areas)
 
     @property
     def area(self) -> float:
@@ -98,15 +99,13 @@ class Overlay(Value):
     def uncovered(self) -> Floats:
         """Area of each new triangle outside of the old mesh, (m,)."""
         covered = np.bincount(self.pairs[:, 1], self.areas, len(self.new_mesh.triangles))
-        out: Floats = self.new_mesh.areas - covered
-        return out
+        return self.new_mesh.areas - covered
 
     @cached_property
     def lost(self) -> Floats:
         """Area of each old triangle outside of the new mesh, (m,)."""
         covered = np.bincount(self.pairs[:, 0], self.areas, len(self.old_mesh.triangles))
-        out: Floats = self.old_mesh.areas - covered
-        return out
+        return self.old_mesh.areas - covered
 
     def __repr__(self) -> str:
         return f"<Overlay: {len(self.pairs)} pairs of triangles, area {self.area:.6g}>"
@@ -169,5 +168,4 @@ def _check_covered_once(beyond: Floats, ours: Located, theirs: Located) -> None:
 
 def _missing(numbers: Ints, count: int) -> Ints:
     """Which of 0, ..., count - 1 are not among some numbers."""
-    out: Ints = np.flatnonzero(np.bincount(numbers, minlength=count) == 0).astype(np.int32)
-    return out
+    return np.flatnonzero(np.bincount(numbers, minlength=count) == 0).astype(np.int32)

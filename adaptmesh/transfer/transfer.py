@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from adaptmesh.errors import TransferError
 from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.types import Floats, Ints
 
 from .location import (
     OUTSIDE,
@@ -20,7 +21,7 @@ from .location import (
     located,
     longest_edges,
 )
-from .spaces import Field, Floats, Ints, Space, as_field, as_fields, basis
+from .spaces import Field, Space, as_field, as_fields, basis
 from .supermesh import Overlay
 
 METHODS = ("interpolation", "conservative")

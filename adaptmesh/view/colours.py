@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from adaptmesh.types import Floats
+
 Bytes = NDArray[np.uint8]
 
 INK = "#22303c"  # text, unnamed boundaries
@@ -49,8 +50,7 @@ def ramp(colours: Sequence[str], steps: int = 256) -> Bytes:
     anchors = np.array([rgb(colour) for colour in colours], float)
     at = np.linspace(0, len(anchors) - 1, steps)
     channels = [np.interp(at, np.arange(len(anchors)), anchors[:, k]) for k in range(3)]
-    out: Bytes = np.stack(channels, axis=1).round().astype(np.uint8)
-    return out
+    return np.stack(channels, axis=1).round().astype(np.uint8)
 
 
 @dataclass(frozen=True)
@@ -85,8 +85,7 @@ class Scale:
         low, high = self.low, self.high
         if self.logarithmic:
             v, low, high = np.log(np.maximum(v, 1e-300)), np.log(low), np.log(high)
-        out: Floats = np.clip(np.nan_to_num((v - low) / (high - low)), 0, 1)
-        return out
+        return np.clip(np.nan_to_num((v - low) / (high - low)), 0, 1)
 
     def __call__(self, values: Floats) -> Bytes:
         """The colours of values, (n, 3)."""

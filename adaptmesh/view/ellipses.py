@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from adaptmesh.types import Floats, Index
 
 from .frame import Frame
 from .paint import View
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.integer]
 
 SIDES = 64  # of the polygon that is drawn
 TRIES = 30  # places looked at for each ellipse
@@ -37,8 +35,7 @@ class Ellipses:
         l22 = np.sqrt(np.maximum(m22 - l21**2, 1e-14 * m22))
         y = np.sin(angle) / l22[:, None]
         x = (np.cos(angle) - l21[:, None] * y) / l11[:, None]
-        out: Floats = self.centres[:, None] + self.enlarged * np.stack([x, y], axis=2)
-        return out
+        return self.centres[:, None] + self.enlarged * np.stack([x, y], axis=2)
 
 
 def choose(places: Floats, tensors: Floats, most: int, frame: Frame) -> Ellipses:
@@ -72,7 +69,7 @@ def choose(places: Floats, tensors: Floats, most: int, frame: Frame) -> Ellipses
     return Ellipses(places[kept], tensors[kept], enlarged)
 
 
-def candidates(view: View, most: int) -> Ints:
+def candidates(view: View, most: int) -> Index:
     """Points spread evenly over the view: corners of triangles that are drawn by their area."""
     random = np.random.default_rng(0)
     areas = np.abs(view.mesh.areas[view.numbers])
@@ -85,8 +82,7 @@ def candidates(view: View, most: int) -> Ints:
 def _norm(tensors: Floats, d: Floats) -> Floats:
     m11, m12, m22 = tensors.T
     x, y = d.T
-    out: Floats = np.sqrt(np.maximum(m11 * x * x + 2 * m12 * x * y + m22 * y * y, 1e-300))
-    return out
+    return np.sqrt(np.maximum(m11 * x * x + 2 * m12 * x * y + m22 * y * y, 1e-300))
 
 
 def _reach(tensors: Floats, ruler: Floats) -> Floats:
@@ -96,8 +92,7 @@ def _reach(tensors: Floats, ruler: Floats) -> Floats:
     det = a11 * a22 - a12 * a12
     half = (a22 * b11 - 2 * a12 * b12 + a11 * b22) / det / 2
     both = (b11 * b22 - b12 * b12) / det
-    out: Floats = np.sqrt(half + np.sqrt(np.maximum(half * half - both, 0)))
-    return out
+    return np.sqrt(half + np.sqrt(np.maximum(half * half - both, 0)))
 
 
 def _nice(factor: float) -> float:

@@ -22,7 +22,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from adaptmesh.types import Floats
+
 Bounds = tuple[float, float, float, float]
 
 MOST_ELONGATED = 12.0  # a longer view is stretched, so that there is something to see
@@ -82,8 +83,7 @@ class Frame:
     @cached_property
     def factor(self) -> Floats:
         """Frame units for each unit of x and of y."""
-        out: Floats = 2 * self.stretch / _stretched(self.bounds)[1].max()
-        return out
+        return 2 * self.stretch / _stretched(self.bounds)[1].max()
 
     @cached_property
     def size(self) -> Floats:

@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from adaptmesh.types import Floats, Index
+
 from .colours import ELLIPSE, Bytes, rgb
 from .ellipses import SIDES, Ellipses
 from .frame import Frame
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.integer]
 
 FACES, EDGES, LINES, ELLIPSES = 0.0, 1e-3, 2e-3, 3e-3  # levels above the paper
 CLEAR = 7.0  # pixels between edges from which on they are drawn at full strength
@@ -20,7 +19,9 @@ THICKER = 2.0  # lines are drawn on a finer grid of pixels, see `screen.make_plo
 FAINTEST = 4  # of 255; fainter edges are left out
 
 
-def draw_faces(plotter: Any, frame: Frame, points: Floats, triangles: Ints, colours: Bytes) -> None:
+def draw_faces(
+    plotter: Any, frame: Frame, points: Floats, triangles: Index, colours: Bytes
+) -> None:
     """Fill triangles, each in its colour, or between the colours of their vertices."""
     shape = _polygons(frame.place(points, FACES), triangles)
     data = shape.cell_data if len(colours) == len(triangles) else shape.point_data
@@ -32,7 +33,7 @@ def draw_edges(
     plotter: Any,
     frame: Frame,
     points: Floats,
-    edges: Ints,
+    edges: Index,
     colours: Bytes,
     spacing: Floats,
     width: float,
@@ -54,7 +55,7 @@ def draw_edges(
 
 
 def draw_lines(
-    plotter: Any, frame: Frame, points: Floats, edges: Ints, colours: Bytes, width: float
+    plotter: Any, frame: Frame, points: Floats, edges: Index, colours: Bytes, width: float
 ) -> None:
     """Draw constrained edges, thick."""
     _add_lines(plotter, frame.place(points, LINES), edges, colours, width * frame.unit)
@@ -72,7 +73,7 @@ def draw_ellipses(plotter: Any, frame: Frame, ellipses: Ellipses) -> None:
     _add_lines(plotter, corners, sides, colours, 1.6 * frame.unit)
 
 
-def _polygons(points: NDArray[np.float32], corners: Ints) -> Any:
+def _polygons(points: NDArray[np.float32], corners: Index) -> Any:
     """Polygons of as many corners each, (k, corners)."""
     import pyvista as pv
 
@@ -81,7 +82,7 @@ def _polygons(points: NDArray[np.float32], corners: Ints) -> Any:
 
 
 def _add_lines(
-    plotter: Any, points: NDArray[np.float32], edges: Ints, colours: Bytes, width: float
+    plotter: Any, points: NDArray[np.float32], edges: Index, colours: Bytes, width: float
 ) -> None:
     import pyvista as pv
 
@@ -93,7 +94,9 @@ def _add_lines(
     plotter.add_mesh(shape, scalars="colour", rgb=True, line_width=width, lighting=False)
 
 
-def edge_spacing(frame: Frame, points: Floats, triangles: Ints, sides: Ints, count: int) -> Floats:
+def edge_spacing(
+    frame: Frame, points: Floats, triangles: Index, sides: Index, count: int
+) -> Floats:
     """The lesser height of the triangles beside each edge, in frame units.
 
     Parameters

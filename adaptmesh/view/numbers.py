@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 
 from adaptmesh.domain.domain import Domain
 from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.types import Floats
 
 from .colours import FADED, PAPER, rgb
 from .frame import Frame
 from .key import Pen
-
-Floats = NDArray[np.float64]
 
 WIDTH, HEIGHT = 9.0, 16.0
 """Pixels that a digit takes."""
@@ -128,5 +127,4 @@ def _apart(boxes: Floats, candidates: NDArray[np.intp]) -> list[int]:
 def _pixels(frame: Frame, points: Floats) -> Floats:
     """Points of the domain as pixels of the window, from its lower left corner."""
     placed = frame.place(points)[:, :2].astype(np.float64)
-    out: Floats = np.array(frame.window) / 2 + (placed - np.array(frame.centre)) * frame.pixel
-    return out
+    return np.array(frame.window) / 2 + (placed - np.array(frame.centre)) * frame.pixel

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.types import Floats, Index
 from metrics import ControlSpace
 from metrics.measure.exact import edge_lengths, mesh_edges, qualities
 
@@ -32,8 +33,6 @@ from .colours import (
 )
 from .frame import Bounds
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.integer]
 Entry = tuple[str, str]  # a name and its colour
 
 
@@ -65,8 +64,7 @@ class View:
 def _touches(corners: Floats, bounds: Bounds) -> NDArray[np.bool_]:
     """Which boxes around triangles or edges reach into the view."""
     low, high = corners.min(axis=1), corners.max(axis=1)
-    out: NDArray[np.bool_] = ((high >= bounds[:2]) & (low <= bounds[2:])).all(axis=1)
-    return out
+    return ((high >= bounds[:2]) & (low <= bounds[2:])).all(axis=1)
 
 
 @dataclass(frozen=True)
@@ -172,5 +170,5 @@ def paint_names(view: View) -> tuple[Bytes, list[Entry]]:
     ]
 
 
-def _all(colour: str, items: Ints) -> Bytes:
+def _all(colour: str, items: Index) -> Bytes:
     return np.tile(rgb(colour), (len(items), 1))

@@ -133,8 +133,7 @@ def plot(
         draw_header(pen, title, caption)
         _draw_key(pen, paint, names, chosen)
         if target is None:
-            shown: pv.Plotter = plotter
-            return shown
+            return plotter
         write_picture(plotter, target)
     return None
 

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from metrics.background import Background
-from metrics.checks import Floats, Ints, as_numbers
+from metrics.checks import as_numbers
 from metrics.errors import MetricError
 from metrics.measure.exact import mesh_edges
+from metrics.types import Floats, Ints
 
 from .normalise import Limits, count_goal, scaled_to
 from .p1_elements import LinearElements, checked_mesh, checked_values
@@ -63,8 +64,7 @@ def zz_indicators(
     squares = [_zz_squares(points, triangles, u, method) for u in columns]
     if not squares:
         raise MetricError(f"values must have the shape (n,) or (n, k), not {fields.shape}")
-    out: Floats = np.sqrt(np.sum(squares, axis=0))
-    return out
+    return np.sqrt(np.sum(squares, axis=0))
 
 
 def _zz_squares(points: ArrayLike, triangles: ArrayLike, values: ArrayLike, method: str) -> Floats:
@@ -73,8 +73,7 @@ def _zz_squares(points: ArrayLike, triangles: ArrayLike, values: ArrayLike, meth
     off = gradients(p, t, u, method)[t] - elements.gradients(u)[:, None, :]
     # Of a linear function with the values d_i at the corners:  A/12 ((sum d_i)^2 + sum d_i^2).
     squares = (off.sum(axis=1) ** 2).sum(axis=1) + (off**2).sum(axis=(1, 2))
-    out: Floats = elements.areas / 12 * squares
-    return out
+    return elements.areas / 12 * squares
 
 
 def residual_indicators(
@@ -124,8 +123,7 @@ def residual_indicators(
         raise MetricError(f"the diffusion on triangle {i} is {k[i]}: it must be positive")
     sides = np.linalg.norm(p[t[:, [2, 0, 1]]] - p[t[:, [1, 2, 0]]], axis=2)
     inside = sides.max(axis=1) ** 2 / k * _squared_norm(source, elements, len(p))
-    out: Floats = np.sqrt(inside + _flux_jumps(p, t, k[:, None] * elements.gradients(u), k))
-    return out
+    return np.sqrt(inside + _flux_jumps(p, t, k[:, None] * elements.gradients(u), k))
 
 
 def _squared_norm(source: ArrayLike, elements: LinearElements, n_points: int) -> Floats:
@@ -152,8 +150,7 @@ def _flux_jumps(p: Floats, t: Ints, flux: Floats, k: Floats) -> Floats:
     larger = np.zeros(len(edges))
     np.maximum.at(larger, of_side, np.repeat(k[:, None], 3, axis=1))
     squares = np.where(inner, jump**2 / larger, 0.0)
-    out: Floats = 0.5 * squares[of_side].sum(axis=1)
-    return out
+    return 0.5 * squares[of_side].sum(axis=1)
 
 
 def _on_triangles(values: ArrayLike, count: int, what: str) -> Floats:

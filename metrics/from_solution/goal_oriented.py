@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from metrics.background import Background
-from metrics.checks import Floats, as_numbers
+from metrics.checks import as_numbers
 from metrics.errors import MetricError
+from metrics.types import Floats
 
 from .normalise import Limits
 from .optimal_metric import metric_from_hessians

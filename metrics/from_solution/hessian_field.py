@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from metrics import _core, tensor
-from metrics.checks import Floats, Ints, as_numbers, as_points, as_triangles
+from metrics.checks import as_numbers, as_points, as_triangles
 from metrics.errors import MetricError
+from metrics.types import Floats, Ints
 
 from .normalise import check_norm
 from .recovery import absolute, derivatives, largest_magnitude
@@ -148,8 +149,7 @@ def _norms(points: Floats, triangles: Ints, gradients: list[Floats], p: float) -
     areas = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
     scale = np.maximum(np.abs(d).max(axis=(0, 1)), np.finfo(float).tiny)
     mean = _mean_square(d / scale) if p == 2 else _mean_power(d / scale, p)
-    out: Floats = 0.5 * scale * (areas * mean) ** (1 / p)
-    return out
+    return 0.5 * scale * (areas * mean) ** (1 / p)
 
 
 def _mean_square(d: Floats) -> Floats:
@@ -158,8 +158,7 @@ def _mean_square(d: Floats) -> Floats:
     d (k, 3, m) are those of k components, whose squares are added.
     """
     d0, d1, d2 = d.transpose(1, 0, 2)
-    out: Floats = (d0 * (d0 + d1) + d1 * (d1 + d2) + d2 * (d2 + d0)).sum(axis=0) / 90
-    return out
+    return (d0 * (d0 + d1) + d1 * (d1 + d2) + d2 * (d2 + d0)).sum(axis=0) / 90
 
 
 def _mean_power(d: Floats, p: float) -> Floats:
@@ -182,8 +181,7 @@ def _maxima(d0: Floats, d1: Floats, d2: Floats) -> Floats:
     total = w.sum(axis=0)
     inside = (w > 0).all(axis=0) | (w < 0).all(axis=0)
     middle = np.where(inside, d0 * d1 * d2 / np.where(inside, 2 * total, 1), 0)
-    out: Floats = np.max(np.abs([d0 / 8, d1 / 8, d2 / 8, middle]), axis=0)
-    return out
+    return np.max(np.abs([d0 / 8, d1 / 8, d2 / 8, middle]), axis=0)
 
 
 def _triangle_rule() -> tuple[Floats, Floats]:

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from metrics import tensor
-from metrics.checks import Floats, Ints, as_points, as_triangles
+from metrics.checks import as_points, as_triangles
 from metrics.errors import MetricError
 from metrics.gradation import check_growth, graded
 from metrics.measure.nodal import border_edges, nodal_complexity, nodal_lengths, vertices_of
+from metrics.types import Floats, Ints
 
 __all__ = [
     "Limits",
@@ -87,8 +88,7 @@ def lp_metric(absolute_hessians: ArrayLike, p: float = 2) -> Floats:
     """
     check_norm(p)
     h = tensor.pack(absolute_hessians, what="the absolute Hessian")
-    out: Floats = tensor.det(h)[:, None] ** (-1 / (2 * p + 2)) * h
-    return out
+    return tensor.det(h)[:, None] ** (-1 / (2 * p + 2)) * h
 
 
 def interpolation_error(

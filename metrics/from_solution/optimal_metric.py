@@ -9,9 +9,10 @@ from numpy.typing import ArrayLike
 
 from metrics import tensor
 from metrics.background import Background
-from metrics.checks import Floats, Ints, as_numbers, as_points, as_triangles
+from metrics.checks import as_numbers, as_points, as_triangles
 from metrics.errors import MetricError
 from metrics.measure.nodal import nodal_complexity
+from metrics.types import Floats, Ints
 
 from .hessian_field import Curvature
 from .normalise import (

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from metrics import _core
-from metrics.checks import Floats, Ints, as_numbers, as_points, as_triangles
+from metrics.checks import as_numbers, as_points, as_triangles
 from metrics.errors import MetricError
+from metrics.types import Floats, Ints
 
 
 def checked_values(
@@ -70,10 +71,8 @@ class LinearElements:
 
     def gradients(self, u: Floats) -> Floats:
         """Gradients on triangles, (m, 2), of the function with the values u (n,)."""
-        out: Floats = np.einsum("ti,tik->tk", u[self.triangles], self.slopes)
-        return out
+        return np.einsum("ti,tik->tk", u[self.triangles], self.slopes)
 
     def gathered(self, parts: Floats) -> Floats:
         """Sums at vertices (n,) of parts at the corners of triangles (m, 3)."""
-        out: Floats = np.bincount(self.triangles.ravel(), parts.ravel()).astype(np.float64)
-        return out
+        return np.bincount(self.triangles.ravel(), parts.ravel()).astype(np.float64)

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from metrics import _core
-from metrics.checks import Floats, Ints, as_numbers
+from metrics.checks import as_numbers
 from metrics.errors import MetricError
+from metrics.types import Floats, Ints
 
 from .p1_elements import checked_values, place_of
 

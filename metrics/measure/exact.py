@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from metrics import _core
-from metrics.checks import Floats, Ints, as_indices, as_points, as_triangles
+from metrics.checks import as_indices, as_points, as_triangles
 from metrics.control import ControlSpace, Metric, as_control_space
 from metrics.errors import MetricError
+from metrics.types import Floats, Ints
 
 __all__ = ["Complexity", "complexity", "edge_lengths", "mesh_edges", "metric_areas", "qualities"]
 
@@ -123,8 +124,7 @@ def qualities(
     if squares.shape != (len(edges),):
         raise MetricError(f"lengths must have the shape ({len(edges)},), not {squares.shape}")
     areas = metric_areas(points, triangles, field)
-    out: Floats = 4 * np.sqrt(3) * areas / squares[sides].sum(axis=1)
-    return out
+    return 4 * np.sqrt(3) * areas / squares[sides].sum(axis=1)
 
 
 def mesh_edges(triangles: ArrayLike) -> tuple[Ints, Ints]:
@@ -281,8 +281,7 @@ class _Leaves(NamedTuple):
         missed = 2 * areas * (1 / valley - 1 / smallest) / np.where(fall > 0, fall, np.inf)
         doubt = np.minimum(variation / _SMOOTH, 1) ** 3
         alone = 0.4 * np.clip((variation - 2.5) / 2, 0, 1)
-        out: Floats = np.maximum(3 * self.differences, alone * np.abs(self.sums)) + doubt * missed
-        return out
+        return np.maximum(3 * self.differences, alone * np.abs(self.sums)) + doubt * missed
 
     def cut(self, field: ControlSpace, chosen: Numbers) -> _Leaves:
         """The same with the chosen leaves replaced by their two parts."""
@@ -310,8 +309,7 @@ def _fit_quadratic() -> Floats:
     x = _RADON_X
     corners = x * (2 * x - 1)
     midpoints = 4 * x[:, [1, 2, 0]] * x[:, [2, 0, 1]]
-    out: Floats = np.linalg.pinv(np.hstack([corners, midpoints]))
-    return out
+    return np.linalg.pinv(np.hstack([corners, midpoints]))
 
 
 _QUADRATIC = _fit_quadratic()
@@ -398,8 +396,7 @@ def _lengths(field: ControlSpace, segments: Floats) -> Floats:
     start, step = segments[:, 0], segments[:, 1] - segments[:, 0]
     where = start[:, None] + _GAUSS_X[:, None] * step[:, None]
     speeds = _core.lengths_in(field(where.reshape(-1, 2)), np.repeat(step, len(_GAUSS_X), axis=0))
-    out: Floats = speeds.reshape(-1, len(_GAUSS_X)) @ _GAUSS_W
-    return out
+    return speeds.reshape(-1, len(_GAUSS_X)) @ _GAUSS_W
 
 
 def _halved(segments: Floats) -> Floats:
@@ -409,8 +406,7 @@ def _halved(segments: Floats) -> Floats:
 
 
 def _areas(field: ControlSpace, triangles: Floats) -> Floats:
-    out: Floats = 0.5 * _doubled_areas(triangles) * (_root_dets(field, triangles) @ _RADON_W)
-    return out
+    return 0.5 * _doubled_areas(triangles) * (_root_dets(field, triangles) @ _RADON_W)
 
 
 def _quartered(triangles: Floats) -> Floats:
@@ -424,11 +420,9 @@ def _quartered(triangles: Floats) -> Floats:
 def _root_dets(field: ControlSpace, triangles: Floats) -> Floats:
     """The square root of det M at the 7 points of each triangle (k, 3, 2): (k, 7)."""
     where = np.einsum("qi,kid->kqd", _RADON_X, triangles)
-    out: Floats = np.sqrt(_core.det(field(where.reshape(-1, 2)))).reshape(-1, len(_RADON_X))
-    return out
+    return np.sqrt(_core.det(field(where.reshape(-1, 2)))).reshape(-1, len(_RADON_X))
 
 
 def _doubled_areas(triangles: Floats) -> Floats:
     u, v = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
-    out: Floats = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-    return out
+    return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from metrics import _core, tensor
-from metrics.checks import Floats, as_points, as_triangles
+from metrics.checks import as_points, as_triangles
 from metrics.errors import MetricError
+from metrics.types import Floats
 
 __all__ = ["implied_metric", "triangle_metrics"]
 

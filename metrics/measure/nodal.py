@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from metrics import _core, tensor
-from metrics.checks import Floats, Ints, as_indices, as_points, as_triangles
+from metrics.checks import as_indices, as_points, as_triangles
 from metrics.errors import MetricError
+from metrics.types import Floats, Ints
 
 from .exact import mesh_edges
 
@@ -79,8 +80,7 @@ def h_shocks(points: ArrayLike, edges: ArrayLike, metric: Any) -> Floats:
         i = int(np.argmin(vectors.any(axis=1)))
         raise MetricError(f"edge {i} = {tuple(ends[i].tolist())} has no length")
     a, b = _core.lengths_in(m[ends[:, 0]], vectors), _core.lengths_in(m[ends[:, 1]], vectors)
-    out: Floats = np.exp(np.abs(np.log(a / b)) / _logarithmic_mean(a, b))
-    return out
+    return np.exp(np.abs(np.log(a / b)) / _logarithmic_mean(a, b))
 
 
 def nodal_areas(points: ArrayLike, triangles: ArrayLike, metric: Any) -> Floats:
@@ -103,8 +103,7 @@ def nodal_qualities(points: ArrayLike, triangles: ArrayLike, metric: Any) -> Flo
     edges, sides = mesh_edges(triangles)
     squares = nodal_lengths(points, edges, metric)[sides] ** 2
     areas = nodal_areas(points, triangles, metric)
-    out: Floats = 4 * np.sqrt(3) * areas / squares.sum(axis=1)
-    return out
+    return 4 * np.sqrt(3) * areas / squares.sum(axis=1)
 
 
 def nodal_complexity(points: ArrayLike, triangles: ArrayLike, metric: Any) -> float:
@@ -133,8 +132,7 @@ def vertices_of(complexity: float, border: float) -> float:
 def border_edges(triangles: ArrayLike) -> Ints:
     """The edges with one triangle only, (k, 2)."""
     edges, sides = mesh_edges(triangles)
-    out: Ints = edges[np.bincount(sides.ravel(), minlength=len(edges)) == 1]
-    return out
+    return edges[np.bincount(sides.ravel(), minlength=len(edges)) == 1]
 
 
 def efficiency_index(lengths: ArrayLike, definition: str = "mean square") -> float:
@@ -185,5 +183,4 @@ def _logarithmic_mean(a: Floats, b: Floats) -> Floats:
     """(a - b) / ln(a / b), and a where they are equal: b (e^x - 1) / x with x = ln(a / b)."""
     x = np.log(np.divide(a, b, out=np.ones_like(a), where=b > 0))
     near = np.abs(x) < 1e-8
-    out: Floats = b * np.where(near, 1 + x / 2, np.expm1(x) / np.where(near, 1, x))
-    return out
+    return b * np.where(near, 1 + x / 2, np.expm1(x) / np.where(near, 1, x))

@@ -14,8 +14,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from metrics.checks import Floats
 from metrics.control import ControlSpace
+from metrics.types import Floats
 
 from .growth import grown
 
@@ -50,5 +50,4 @@ def size_along(field: ControlSpace, points: Floats, normals: Floats) -> Floats:
     m = field(points)
     x, y = normals.T
     squares = m[:, 0] * y * y - 2 * m[:, 1] * x * y + m[:, 2] * x * x
-    out: Floats = 1 / np.sqrt(squares)
-    return out
+    return 1 / np.sqrt(squares)

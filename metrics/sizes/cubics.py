@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from metrics.checks import Floats, Ints
+from metrics.types import Floats, Ints
 
 __all__ = ["Cubics"]
 
@@ -103,8 +103,7 @@ class Cubics:
 
 
 def _squares(vectors: Floats) -> Floats:
-    out: Floats = (vectors**2).sum(axis=1)
-    return out
+    return (vectors**2).sum(axis=1)
 
 
 def _neighbours(ends: Floats, derivatives: Floats) -> Ints:

@@ -7,8 +7,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from metrics.checks import Floats
 from metrics.control import ControlSpace
+from metrics.types import Floats
 
 from .geometry import as_geometry
 from .given import chosen, h_limit, positive

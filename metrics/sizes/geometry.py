@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from metrics import _core
-from metrics.checks import Floats, Ints, as_points
+from metrics.checks import as_points
 from metrics.errors import MetricError
+from metrics.types import Floats, Ints
 
 from .cubics import Cubics
 from .geometry_input import Part, Pieces, parts_of

@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from metrics.checks import Floats, as_indices, as_points
+from metrics.checks import as_indices, as_points
 from metrics.errors import MetricError
+from metrics.types import Floats
 
 __all__ = ["Part", "Pieces", "parts_of"]
 

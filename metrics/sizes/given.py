@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from metrics.checks import Floats, as_numbers
+from metrics.checks import as_numbers
 from metrics.errors import AdaptmeshError, MetricError
+from metrics.types import Floats
 
 __all__ = ["chosen", "evaluated", "h_limit", "number", "positive"]
 

@@ -18,8 +18,8 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from metrics.checks import Floats
 from metrics.errors import MetricError
+from metrics.types import Floats
 
 from .given import chosen, number
 
@@ -42,5 +42,4 @@ def slope_of(growth: Any, law: Law, name: str = "growth") -> float:
 
 def grown(h: float | Floats, slope: float, distances: Floats, h_max: float) -> Floats:
     """Sizes at distances (n,) from where they are h."""
-    out: Floats = np.minimum(h + slope * distances, h_max)
-    return out
+    return np.minimum(h + slope * distances, h_max)

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from metrics.checks import Floats
 from metrics.control import ControlSpace, Metric, as_control_space
 from metrics.errors import MetricError
+from metrics.types import Floats
 
 from .anisotropic_layer import layered, size_along
 from .geometry import as_curves

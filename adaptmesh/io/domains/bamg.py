@@ -26,7 +26,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.arrangement import find_faces
 from adaptmesh.curves import Bezier, Curve, Line
@@ -36,9 +35,7 @@ from adaptmesh.errors import FormatError
 from adaptmesh.files.located import located
 from adaptmesh.files.records import TextCursor, one
 from adaptmesh.files.whole import read_text
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
+from adaptmesh.types import Floats, Int64s
 
 CORNER_ANGLE = 10.0
 """Edges that turn by less, in degrees, are smooth, if the file does not say it otherwise."""
@@ -66,14 +63,14 @@ class _Geometry:
 
     corner_angle: float = CORNER_ANGLE
     vertices: Floats = field(default_factory=lambda: np.empty((0, 2)))
-    edges: Integers = field(default_factory=lambda: np.empty((0, 2), np.int64))
-    tags: Integers = field(default_factory=lambda: np.empty(0, np.int64))
-    corners: Integers = field(default_factory=lambda: np.empty(0, np.int64))
-    required_vertices: Integers = field(default_factory=lambda: np.empty(0, np.int64))
-    required_edges: Integers = field(default_factory=lambda: np.empty(0, np.int64))
-    tangent_ends: Integers = field(default_factory=lambda: np.empty((0, 2), np.int64))
+    edges: Int64s = field(default_factory=lambda: np.empty((0, 2), np.int64))
+    tags: Int64s = field(default_factory=lambda: np.empty(0, np.int64))
+    corners: Int64s = field(default_factory=lambda: np.empty(0, np.int64))
+    required_vertices: Int64s = field(default_factory=lambda: np.empty(0, np.int64))
+    required_edges: Int64s = field(default_factory=lambda: np.empty(0, np.int64))
+    tangent_ends: Int64s = field(default_factory=lambda: np.empty((0, 2), np.int64))
     tangents: Floats = field(default_factory=lambda: np.empty((0, 2)))
-    subdomains: Integers = field(default_factory=lambda: np.empty((0, 4), np.int64))
+    subdomains: Int64s = field(default_factory=lambda: np.empty((0, 4), np.int64))
 
     @classmethod
     def of(cls, text: str) -> _Geometry:
@@ -259,7 +256,7 @@ def _read_required_edges(geometry: _Geometry, cursor: TextCursor) -> None:
     geometry.required_edges = _numbers(cursor)
 
 
-def _numbers(cursor: TextCursor) -> Integers:
+def _numbers(cursor: TextCursor) -> Int64s:
     return cursor.rows(_count(cursor), ("i8", 1))[0][:, 0] - 1
 
 

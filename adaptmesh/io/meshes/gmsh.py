@@ -39,8 +39,9 @@ from adaptmesh.files.bounded import Allowance, read_json, whole_number
 from adaptmesh.files.located import located
 from adaptmesh.files.records import BinaryCursor, Cursor, TextCursor, table
 from adaptmesh.files.whole import text_of
-from adaptmesh.mesh.incoming import Array, Content, refuse_cells
+from adaptmesh.mesh.incoming import Content, refuse_cells
 from adaptmesh.mesh.periodic_sides import checked_rows
+from adaptmesh.types import Array
 
 from .gmsh_groups import in_several, name_several
 from .spatial import plane_fields, shaped, shapes, spatial, spatial_tensor, take_metric

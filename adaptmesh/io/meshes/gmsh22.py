@@ -16,7 +16,8 @@ import numpy as np
 from adaptmesh.errors import FormatError
 from adaptmesh.files.bounded import whole_number
 from adaptmesh.files.records import BinaryCursor, Cursor, TextCursor, one, table
-from adaptmesh.mesh.incoming import Array, Content
+from adaptmesh.mesh.incoming import Content
+from adaptmesh.types import Array
 
 from .gmsh import NODES_OF_TYPE, Elements, Sections, refuse_element_types, section
 

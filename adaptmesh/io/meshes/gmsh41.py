@@ -19,7 +19,8 @@ import numpy as np
 
 from adaptmesh.errors import FormatError
 from adaptmesh.files.records import Cursor, one, table
-from adaptmesh.mesh.incoming import Array, Content
+from adaptmesh.mesh.incoming import Content
+from adaptmesh.types import Array
 
 from .gmsh import NODES_OF_TYPE, Elements, Sections, refuse_element_types, section
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from adaptmesh.errors import FormatWarning
-from adaptmesh.mesh.incoming import Array
+from adaptmesh.types import Array
 
 if TYPE_CHECKING:
     from .gmsh import Elements, Sections

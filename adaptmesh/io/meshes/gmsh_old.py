@@ -18,7 +18,7 @@ import numpy as np
 
 from adaptmesh.errors import FormatError
 from adaptmesh.files.records import BinaryCursor, Cursor, TextCursor, one
-from adaptmesh.mesh.incoming import Array
+from adaptmesh.types import Array
 
 from .gmsh import DIMENSION_OF_TYPE, NODES_OF_TYPE, Elements, Sections, refuse_element_types
 

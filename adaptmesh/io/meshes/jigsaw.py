@@ -28,7 +28,8 @@ from adaptmesh.files.bounded import whole_number
 from adaptmesh.files.located import located
 from adaptmesh.files.records import TextCursor
 from adaptmesh.files.whole import text_of
-from adaptmesh.mesh.incoming import Array, Content, check_vertices, refuse_cells
+from adaptmesh.mesh.incoming import Content, check_vertices, refuse_cells
+from adaptmesh.types import Array
 
 _CELLS = {"EDGE2": 3, "TRIA3": 4}
 _OTHER_CELLS = {

@@ -33,8 +33,9 @@ from adaptmesh.files.bounded import read_json
 from adaptmesh.files.located import located
 from adaptmesh.files.records import table
 from adaptmesh.files.whole import text_of
-from adaptmesh.mesh.incoming import Array, Content, refuse_cells
+from adaptmesh.mesh.incoming import Content, refuse_cells
 from adaptmesh.mesh.periodic_sides import Rows, checked_rows
+from adaptmesh.types import Array
 
 from .counts import check_stated, stated
 from .medit_keywords import (

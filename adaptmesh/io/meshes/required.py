@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.domain.projection import tolerance_of
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.validate.subject import edge_keys
-
-Ints = NDArray[np.int32]
+from adaptmesh.types import Ints
 
 
 def required_items(mesh: Mesh) -> tuple[Ints, Ints]:

@@ -24,7 +24,8 @@ from adaptmesh.errors import FormatError
 from adaptmesh.files.located import located
 from adaptmesh.files.records import one, table
 from adaptmesh.files.whole import read_bytes
-from adaptmesh.mesh.incoming import Array, Content
+from adaptmesh.mesh.incoming import Content
+from adaptmesh.types import Array
 
 from .medit_keywords import MeditFile, binary_file, count, dimension, opened, text_file
 from .spatial import flat

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from adaptmesh.mesh.incoming import Array, Content
+from adaptmesh.mesh.incoming import Content
+from adaptmesh.types import Array
 
 _MOST_DIMENSIONS = 8
 

@@ -27,7 +27,8 @@ from pathlib import Path
 import numpy as np
 
 from adaptmesh.files.located import located
-from adaptmesh.mesh.incoming import Array, Content
+from adaptmesh.mesh.incoming import Content
+from adaptmesh.types import Array
 
 from .counts import check_stated, stated
 from .triangle_tables import COUNTS, END, OURS, Table, read_points, read_segments

@@ -23,8 +23,8 @@ from adaptmesh.errors import FormatError
 from adaptmesh.files.bounded import read_json, signed_number
 from adaptmesh.files.located import located
 from adaptmesh.files.whole import read_text
-from adaptmesh.mesh.incoming import Array
 from adaptmesh.mesh.periodic_sides import Rows, checked_rows
+from adaptmesh.types import Array
 
 OURS, END, COUNTS = "adaptmesh", "end", "counts"
 _COMMENT = re.compile(r"#[^\n]*")
@@ -104,8 +104,7 @@ class Table:
             raise self.error(
                 f"{what} {row} has a number that is not whole: {values[row]}", row - len(values)
             )
-        out: Array = values.astype(np.int64)
-        return out
+        return values.astype(np.int64)
 
     def _ended(self, what: str) -> FormatError:
         return FormatError(f"{self.path} ends where {what} should be: is the file complete?")

@@ -29,7 +29,8 @@ import numpy as np
 from adaptmesh.errors import FormatError
 from adaptmesh.files.located import located
 from adaptmesh.files.whole import text_of
-from adaptmesh.mesh.incoming import Array, Content
+from adaptmesh.mesh.incoming import Content
+from adaptmesh.types import Array
 
 from .counts import check_stated, stated
 from .vtk_grid import Grid, content_of, grid_of, is_ours, take_names

@@ -32,8 +32,9 @@ import numpy as np
 
 from adaptmesh.errors import FormatError
 from adaptmesh.files.bounded import read_json
-from adaptmesh.mesh.incoming import Array, Content, refuse_cells
+from adaptmesh.mesh.incoming import Content, refuse_cells
 from adaptmesh.mesh.periodic_sides import checked_rows
+from adaptmesh.types import Array
 
 from .spatial import (
     flat,

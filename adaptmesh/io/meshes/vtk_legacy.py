@@ -10,7 +10,7 @@ from adaptmesh.errors import FormatError
 from adaptmesh.files.bounded import whole_number
 from adaptmesh.files.records import BinaryCursor, TextCursor
 from adaptmesh.files.whole import text_of, without_mark
-from adaptmesh.mesh.incoming import Array
+from adaptmesh.types import Array
 
 KINDS = {
     "char": "i1", "signed_char": "i1", "unsigned_char": "u1", "short": "i2", "unsigned_short": "u2",

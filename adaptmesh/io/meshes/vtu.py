@@ -18,7 +18,8 @@ import numpy as np
 
 from adaptmesh.errors import FormatError, FormatWarning
 from adaptmesh.files.bounded import Allowance, read_xml
-from adaptmesh.mesh.incoming import Array, Content, check_vertices
+from adaptmesh.mesh.incoming import Content, check_vertices
+from adaptmesh.types import Array
 
 from .counts import check_stated, stated
 from .vtk_grid import Grid, content_of, grid_of, is_ours, take_names

@@ -22,7 +22,7 @@ from adaptmesh.errors import FormatError
 from adaptmesh.files.bounded import Allowance, inflated, whole_number
 from adaptmesh.files.located import located
 from adaptmesh.files.records import TextCursor
-from adaptmesh.mesh.incoming import Array
+from adaptmesh.types import Array
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

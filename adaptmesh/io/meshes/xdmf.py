@@ -28,8 +28,9 @@ import numpy as np
 from adaptmesh.errors import FormatError, FormatWarning
 from adaptmesh.files.bounded import read_json, read_xml
 from adaptmesh.files.hdf5 import import_h5py
-from adaptmesh.mesh.incoming import Array, Content, check_vertices, refuse_cells
+from adaptmesh.mesh.incoming import Content, check_vertices, refuse_cells
 from adaptmesh.mesh.periodic_sides import Rows, checked_rows
+from adaptmesh.types import Array
 
 from .counts import check_stated, stated
 from .xdmf_arrays import XdmfArrays

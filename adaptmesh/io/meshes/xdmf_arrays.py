@@ -12,7 +12,7 @@ from adaptmesh.files.hdf5 import Hdf5File
 from adaptmesh.files.located import located
 from adaptmesh.files.records import TextCursor
 from adaptmesh.files.whole import read_bytes
-from adaptmesh.mesh.incoming import Array
+from adaptmesh.types import Array
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

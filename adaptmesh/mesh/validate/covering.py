@@ -12,7 +12,9 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from .subject import Finding, Floats, Index, Ints, Subject, finding
+from adaptmesh.types import Floats, Index, Int64s
+
+from .subject import Finding, Subject, finding
 
 
 def single_turn(s: Subject) -> Finding:
@@ -99,7 +101,7 @@ def euler(s: Subject) -> Finding:
     return Finding(1, f"{note}, but {by_points} pieces with {holes} holes make {expected}")
 
 
-def components(n: int, pairs: Index) -> tuple[int, Ints]:
+def components(n: int, pairs: Index) -> tuple[int, Int64s]:
     """How many connected components n items have with these links, and that of each item."""
     graph = coo_array((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(n, n))
     count, label = connected_components(graph, directed=False)

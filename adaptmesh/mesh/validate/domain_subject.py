@@ -11,9 +11,10 @@ import numpy as np
 from adaptmesh.domain.projection import places_on_runs, tolerance_of
 from adaptmesh.domain.side import Lines
 from adaptmesh.mesh.boundary_polylines import vertices_at
+from adaptmesh.types import Bools, Floats, Index, Int64s
 
 from .rows import Row, rows_of, rows_of_lines
-from .subject import Bools, Floats, Index, Ints, Subject
+from .subject import Subject
 
 if TYPE_CHECKING:
     from shapely import LineString, MultiLineString
@@ -65,7 +66,7 @@ class DomainSubject(Subject):
         return Lines.of(self.domain)
 
     @cached_property
-    def vertices(self) -> Ints:
+    def vertices(self) -> Int64s:
         """The vertex at each corner of the domain, (c,), -1 where there is none.
 
         One with the very coordinates, or else the nearest that is no other corner and within the
@@ -85,7 +86,7 @@ class DomainSubject(Subject):
         return out
 
     @cached_property
-    def corner(self) -> Ints:
+    def corner(self) -> Int64s:
         """The corner of the domain that each vertex is, (n,), or -1."""
         out = np.full(len(self.mesh.points), -1, np.int64)
         found = np.flatnonzero(self.vertices >= 0)
@@ -98,7 +99,7 @@ class DomainSubject(Subject):
         return rows_of(self.mesh.edges, self.corner)
 
     @cached_property
-    def row_of_line(self) -> Ints:
+    def row_of_line(self) -> Int64s:
         """The number of the row of each line, (l,), or -1."""
         return rows_of_lines(self.all_rows, self.corner, self.lines.ends, self._distances)
 

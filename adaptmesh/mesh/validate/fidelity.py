@@ -10,9 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from adaptmesh.types import Bools, Floats, Index, Int64s
+
 from .domain_subject import DomainSubject
 from .rows import Row
-from .subject import Bools, Finding, Floats, Index, Ints, finding
+from .subject import Finding, finding
 
 
 def points_present(s: DomainSubject) -> Finding:
@@ -62,8 +64,8 @@ def edges_on_segments(s: DomainSubject) -> Finding:
 class Inner(NamedTuple):
     """The vertices of rows but their ends, in order: their lines and numbers, (k,)."""
 
-    line: Ints
-    vertex: Ints
+    line: Int64s
+    vertex: Int64s
 
     @classmethod
     def of(cls, rows: list[Row | None], lines: Index) -> Inner:
@@ -115,7 +117,7 @@ def _out_of_order(s: DomainSubject, inner: Inner, along: Floats) -> Bools:
     return bad
 
 
-def _ends_along(s: DomainSubject, line: Ints) -> tuple[Floats, Floats]:
+def _ends_along(s: DomainSubject, line: Int64s) -> tuple[Floats, Floats]:
     """Where lines (k,) begin and end, in terms of `Places.along`."""
     ends = s.lines.corners[s.lines.ends[line]]
     p = s.scale(ends)

@@ -15,9 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh.domain.seeds import OUTSIDE, parts_between, regions_beside, triangles_beside
+from adaptmesh.types import Int64s
 
 from .domain_subject import DomainSubject
-from .subject import Finding, Ints, finding
+from .subject import Finding, finding
 
 
 class Sides(NamedTuple):
@@ -33,9 +34,9 @@ class Sides(NamedTuple):
         The region that the domain has there, `OUTSIDE` for none.
     """
 
-    edge: Ints
-    triangle: Ints
-    expected: Ints
+    edge: Int64s
+    triangle: Int64s
+    expected: Int64s
 
 
 def sides_of_rows(s: DomainSubject) -> Sides:

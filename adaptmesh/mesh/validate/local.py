@@ -7,7 +7,9 @@ from functools import partial
 
 import numpy as np
 
-from .subject import SHOWN, Finding, Index, Subject, edge_keys, finding
+from adaptmesh.types import Index
+
+from .subject import SHOWN, Finding, Subject, edge_keys, finding
 
 
 def not_empty(s: Subject) -> Finding:

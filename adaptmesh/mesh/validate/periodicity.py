@@ -6,10 +6,11 @@ import numpy as np
 
 from adaptmesh.domain.periodic import images_on
 from adaptmesh.domain.side import Tie
+from adaptmesh.types import Floats
 
 from .domain_subject import DomainSubject
 from .rows import Row
-from .subject import Finding, Floats, finding
+from .subject import Finding, finding
 
 
 def periodic_boundaries(s: DomainSubject) -> Finding:
@@ -57,8 +58,7 @@ def _off_in_domain(s: DomainSubject, tie: Tie, images: Floats) -> Floats:
     if tie.line >= s.lines.n_straight:
         run = s.domain.curved.runs[tie.line - s.lines.n_straight]
         nearest = images_on(run, images)
-        off: Floats = np.hypot(*(run.point(nearest) - images).T)
-        return off
+        return np.hypot(*(run.point(nearest) - images).T)
     a, b = s.lines.corners[s.lines.ends[tie.line]]
     if np.abs(images[0] - a).max() > np.abs(images[0] - b).max():
         a, b = b, a

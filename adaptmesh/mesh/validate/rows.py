@@ -17,7 +17,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from .subject import Floats, Index, Ints, edge_keys
+from adaptmesh.types import Floats, Index, Int64s
+
+from .subject import edge_keys
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,11 +36,11 @@ class Row(NamedTuple):
         Numbers of constrained edges.
     """
 
-    vertices: Ints
-    edges: Ints
+    vertices: Int64s
+    edges: Int64s
 
     @property
-    def inner(self) -> Ints:
+    def inner(self) -> Int64s:
         """The vertices but the first and the last."""
         return self.vertices[1:-1]
 
@@ -85,7 +87,7 @@ def rows_of_lines(
     corner: Index,
     ends: Index,
     distances: Callable[[Index, Index], Floats],
-) -> Ints:
+) -> Int64s:
     """The row of each line, (l,), -1 where there is none; lines have these corners at their ends.
 
     ``distances(rows, lines)`` says how far each row is from each line, by number, (r, l); it is

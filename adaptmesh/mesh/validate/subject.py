@@ -10,17 +10,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh import _core
+from adaptmesh._core import orient2d, sweep_border
+from adaptmesh.types import Bools, Floats, Index, Int64s
 
 if TYPE_CHECKING:
     from adaptmesh.mesh.mesh import Mesh
 
 SHOWN = 5  # offenders named for each check
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-Index = NDArray[np.integer]
 
 
 class Finding(NamedTuple):
@@ -60,8 +56,7 @@ class Subject:
 
         The signs of all areas stay the same, and nothing overflows.
         """
-        out: Floats = np.ldexp(points, -self.exponent)
-        return out
+        return np.ldexp(points, -self.exponent)
 
     @cached_property
     def points(self) -> Floats:
@@ -77,12 +72,12 @@ class Subject:
     def border_sweep(self) -> tuple[tuple[int, int], NDArray[np.int32]]:
         """Two border edges that cross, or (-1, -1), and the triangles on the left of each."""
         ends = self.sides.ends(self.sides.border).astype(np.int32)
-        return _core.sweep_border(self.points, ends)
+        return sweep_border(self.points, ends)
 
     def orient(self, a: Index, b: Index, c: Index) -> NDArray[np.int8]:
         """Exact signs of the areas of the triangles (a, b, c), given by point numbers."""
         p = self.points
-        return np.asarray(_core.orient2d(p[a], p[b], p[c]))
+        return np.asarray(orient2d(p[a], p[b], p[c]))
 
     @cached_property
     def used(self) -> Bools:
@@ -109,12 +104,12 @@ class Sides:
     them from ``first[e]`` on; ``keys`` are the sorted keys of the edges, see `edge_keys`.
     """
 
-    tail: Ints
-    head: Ints
-    triangle: Ints
-    first: Ints
-    count: Ints
-    keys: Ints
+    tail: Int64s
+    head: Int64s
+    triangle: Int64s
+    first: Int64s
+    count: Int64s
+    keys: Int64s
 
     @classmethod
     def of(cls, mesh: Mesh) -> Sides:
@@ -129,21 +124,20 @@ class Sides:
         return cls(tail[order], head[order], order % len(t), first, count, edges[first])
 
     @cached_property
-    def border(self) -> Ints:
+    def border(self) -> Int64s:
         """Numbers of the edges with a single triangle; it lies on their left."""
         return np.flatnonzero(self.count == 1)
 
-    def missing(self, keys: Ints) -> Bools:
+    def missing(self, keys: Int64s) -> Bools:
         """Which of these keys belong to no edge."""
         place = np.minimum(np.searchsorted(self.keys, keys), len(self.keys) - 1)
-        out: Bools = self.keys[place] != keys
-        return out
+        return self.keys[place] != keys
 
-    def ends(self, edges: Index) -> Ints:
+    def ends(self, edges: Index) -> Int64s:
         """Tail and head of some edges, (k, 2), as the first triangle of each runs along it."""
         return np.stack([self.tail[self.first[edges]], self.head[self.first[edges]]], axis=1)
 
 
-def edge_keys(a: Index, b: Index, n: int) -> Ints:
+def edge_keys(a: Index, b: Index, n: int) -> Int64s:
     """One number for each pair out of n points, whatever their order."""
     return np.minimum(a, b).astype(np.int64) * n + np.maximum(a, b)

@@ -16,17 +16,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.curves import Arc, BSpline, Circle, Curve, EllipticArc, Line
 from adaptmesh.curves.checks import checked_point
 from adaptmesh.errors import AdaptmeshError, FormatError, FormatWarning
 from adaptmesh.files.located import located, refusing
 from adaptmesh.files.whole import read_bytes
+from adaptmesh.types import Floats
 
 from .drawing import Drawing
-
-Floats = NDArray[np.float64]
 
 _ANNOTATION = """
 TEXT MTEXT ATTRIB ATTDEF DIMENSION ARC_DIMENSION LARGE_RADIAL_DIMENSION LEADER MLEADER MULTILEADER
@@ -299,8 +297,7 @@ def _flat(points: Any) -> Floats:
     xyz = np.array([tuple(p) + (0.0,) * (3 - len(tuple(p))) for p in points], float).reshape(-1, 3)
     if np.ptp(xyz[:, 2]) > 0:
         raise FormatError("does not lie in a plane z = constant")
-    out: Floats = xyz[:, :2]
-    return out
+    return xyz[:, :2]
 
 
 _READERS = {

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.curves import Bezier, Curve, Line
 from adaptmesh.curves.checks import checked_point
@@ -23,11 +22,10 @@ from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.files.bounded import read_xml
 from adaptmesh.files.located import located, refusing
 from adaptmesh.files.whole import read_bytes, readable_xml
+from adaptmesh.types import Floats
 
 from .drawing import Drawing, affine_arc
 from .svg_syntax import check_syntax
-
-Floats = NDArray[np.float64]
 
 _ROUNDING = 1e-14  # what arcs leave of a gap that `Z` then closes, as a share of coordinates
 _LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
@@ -83,8 +81,7 @@ class _Placement:
         return checked_point(out, "a point")
 
     def vector(self, p: Any, origin: Any) -> Floats:
-        out: Floats = self._linear @ [float(p.x) - float(origin.x), float(p.y) - float(origin.y)]
-        return out
+        return self._linear @ [float(p.x) - float(origin.x), float(p.y) - float(origin.y)]
 
 
 def _curve(svg: Any, segment: Any, place: _Placement) -> Curve | None:

@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.curves import Arc, BSpline, Curve, Line
 from adaptmesh.domain.coincident_curves import curves_once
@@ -29,11 +28,10 @@ from adaptmesh.domain.inscribed_polygon import extent_of
 from adaptmesh.domain.surfaces import joined_lines, seeds_of
 from adaptmesh.errors import FormatError, FormatWarning
 from adaptmesh.io.domains.drawings.drawing import JOINED, affine_arc
+from adaptmesh.types import Floats
 
 from .gmsh_script import MENTIONED, SafeScript, safe_script
 from .groups import names_of_groups
-
-Floats = NDArray[np.float64]
 
 SECONDS = 60
 """Of processor time that a script may take in Gmsh."""

@@ -6,13 +6,11 @@ from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.domain.paths import places_of
 from adaptmesh.errors import FormatError
 from adaptmesh.io.domains.drawings.drawing import JOINED
-
-Floats = NDArray[np.float64]
+from adaptmesh.types import Floats
 
 
 def walk_of(lines: Sequence[Floats]) -> tuple[list[tuple[int, bool]], Floats | None]:

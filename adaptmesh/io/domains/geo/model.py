@@ -18,7 +18,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.curves import Arc, Bezier, BSpline, Curve, EllipticArc, Line
 from adaptmesh.domain.domain import Domain
@@ -28,14 +27,13 @@ from adaptmesh.domain.surfaces import seeds_of
 from adaptmesh.errors import DomainError, FormatError, FormatWarning
 from adaptmesh.files.whole import read_text
 from adaptmesh.io.domains.drawings.drawing import JOINED
+from adaptmesh.types import Floats
 
 from . import by_gmsh
 from .closed_loops import not_closed, walk_of
 from .expressions import NotReadError
 from .groups import names_of_groups
 from .script import CURVES, Definition, Script, script_of
-
-Floats = NDArray[np.float64]
 
 SAME_RADIUS = 1e-6
 """The ends of a Circle have the same distance from its centre, to this share."""
