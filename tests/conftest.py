@@ -9,8 +9,13 @@ from pathlib import Path
 
 import pytest
 
-import adaptmesh
-import metrics
+# `python -m pytest` in the root of the project puts that first on the path. There the packages are
+# sources, which have no compiled core: what is tested is what is installed, be it editable.
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:] = [entry for entry in sys.path if Path(entry).resolve() != ROOT]
+
+import adaptmesh  # noqa: E402
+import metrics  # noqa: E402
 
 # Lets tests import the oracles: ``from reference.exact import incircle``. Appended, not put first:
 # tests/metrics and tests/adaptmesh must not hide the packages.
