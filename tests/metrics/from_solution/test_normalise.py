@@ -1,10 +1,13 @@
 """Counts that are asked for are met, whatever the limits; what cannot be is said."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference.meshes import from_axes, irregular_square, regular_square
+from reference.transforms import SIMILARITIES, TRANSFORMS
 
 from metrics import (
     Limits,
@@ -22,6 +25,13 @@ from metrics import (
 
 POINTS, TRIANGLES = irregular_square(25)
 FRONT = from_axes(1e-3 + np.abs(POINTS[:, 0] + 0.3 * POINTS[:, 1] - 0.6), 1.0, 0.29)
+everywhere = pytest.mark.parametrize("transform", TRANSFORMS, ids=str)
+turned_and_scaled = pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
+
+
+def carried(transform):
+    """The metric of a front, points and triangles in another frame."""
+    return transform.metric(FRONT), transform(POINTS), transform.triangles(TRIANGLES)
 
 
 # --- the L^p metric ----------------------------------------------------------------------------
@@ -34,21 +44,24 @@ def test_lp_metric_is_the_formula(p):
     np.testing.assert_allclose(lp_metric(h, p), np.linalg.det(tensor.unpack(h)[0]) ** exponent * h)
 
 
+@everywhere
 @pytest.mark.parametrize("p", [1, 2, 4, 50])
-def test_lp_metric_has_the_least_error_of_its_complexity(p):
+def test_lp_metric_has_the_least_error_of_its_complexity(p, transform):
     """Any other scaling in space, at the same complexity, has a larger one."""
-    best = normalised(lp_metric(FRONT, p), POINTS, TRIANGLES, complexity=1000)
-    least = interpolation_error(POINTS, TRIANGLES, best, FRONT, p)
+    hessians, points, triangles = carried(transform)
+    best = normalised(lp_metric(hessians, p), points, triangles, complexity=1000)
+    least = interpolation_error(points, triangles, best, hessians, p)
     rng = np.random.default_rng(3)
     for size in (0.3, 0.03):
         bump = np.exp(size * np.sin(3 * rng.normal(size=2) @ POINTS.T))[:, None]
-        other = normalised(best * bump, POINTS, TRIANGLES, complexity=1000)
-        assert interpolation_error(POINTS, TRIANGLES, other, FRONT, p) > least * (1 + 1e-6)
+        other = normalised(best * bump, points, triangles, complexity=1000)
+        assert interpolation_error(points, triangles, other, hessians, p) > least * (1 + 1e-6)
 
 
+@everywhere
 @pytest.mark.parametrize("p", [1, 2, 3, np.inf])
 @pytest.mark.parametrize("n", [2, 5])
-def test_error_is_that_on_equilateral_triangles(p, n):
+def test_error_is_that_on_equilateral_triangles(p, n, transform):
     """A paraboloid on a triangle cut into n * n equilateral ones: |e| = (R^2 - r^2) / 2 in each."""
     x, w = np.polynomial.legendre.leggauss(30)
     x, w = (x + 1) / 2, w / 2
@@ -59,13 +72,19 @@ def test_error_is_that_on_equilateral_triangles(p, n):
     centre = corners.mean(axis=0)
     error = 3 * ((centre**2).sum() - ((place - centre) ** 2).sum(axis=1)) / 2
     wanted = error.max() if p == np.inf else (np.sqrt(3) / 4 * (weight @ error**p)) ** (1 / p)
-    got = interpolation_error(corners * n, [[0, 1, 2]], np.full(3, 1 / n), [[3.0, 0.0, 3.0]] * 3, p)
-    assert got == pytest.approx(wanted, rel=2e-2 if p == np.inf else 1e-9)
+    sizes, hessians = (transform.metric(m) for m in ([[n**2, 0, n**2]] * 3, [[3.0, 0.0, 3.0]] * 3))
+    triangle = transform.triangles([[0, 1, 2]])
+    got = interpolation_error(transform(corners * n), triangle, sizes, hessians, p)
+    wanted *= abs(transform.determinant) ** (1 / p)
+    rounding = 1e-9 + 10 * transform.rounding
+    assert got == pytest.approx(wanted, rel=2e-2 if p == np.inf else rounding)
 
 
-def test_error_is_half_where_the_sizes_are_smaller_by_root_two():
-    first = interpolation_error(POINTS, TRIANGLES, FRONT, FRONT)
-    assert interpolation_error(POINTS, TRIANGLES, 2 * FRONT, FRONT) == pytest.approx(first / 2)
+@everywhere
+def test_error_is_half_where_the_sizes_are_smaller_by_root_two(transform):
+    front, *mesh = carried(transform)
+    first = interpolation_error(*mesh, front, front)
+    assert interpolation_error(*mesh, 2 * front, front) == pytest.approx(first / 2)
 
 
 @pytest.mark.parametrize("p", [0.5, 0, -1, np.nan])
@@ -90,15 +109,19 @@ def test_norms_below_one_are_refused(p):
     ],
 )
 @pytest.mark.parametrize("target", [400, 20_000])
-def test_the_count_is_met_after_the_limits(limits, target):
-    got = normalised(FRONT, POINTS, TRIANGLES, target_vertices=target, limits=limits)
-    assert predicted_vertices(POINTS, TRIANGLES, got) == pytest.approx(target, rel=1e-3)
-    small, large = tensor.sizes(got).T
+@turned_and_scaled
+def test_the_count_is_met_after_the_limits(limits, target, transform):
+    front, points, triangles = carried(transform)
+    scale = transform.scale
+    units = replace(limits, h_min=limits.h_min * scale, h_max=limits.h_max * scale)
+    got = normalised(front, points, triangles, target_vertices=target, limits=units)
+    assert predicted_vertices(points, triangles, got) == pytest.approx(target, rel=1e-3)
+    small, large = tensor.sizes(got).T / scale
     assert small.min() >= limits.h_min * (1 - 1e-9)
     assert large.max() <= limits.h_max * (1 + 1e-9)
     assert (large / small).max() <= limits.max_anisotropy * (1 + 1e-9)
     if limits.law == "h-correction":
-        shocks = h_shocks(POINTS, mesh_edges(TRIANGLES)[0], got)
+        shocks = h_shocks(points, mesh_edges(triangles)[0], got)
         assert shocks.max() < limits.gradation * (1 + 1e-4)
 
 
@@ -109,21 +132,25 @@ def test_the_count_is_met_after_the_limits(limits, target):
     st.sampled_from([None, 1.2, 2.0]),
     st.floats(1, 1e3),
     st.floats(-3, 3),
+    st.sampled_from(TRANSFORMS),
 )
-def test_any_complexity_of_any_field(seed, target, gradation, anisotropy, scale):
+def test_any_complexity_of_any_field(seed, target, gradation, anisotropy, scale, transform):
     rng = np.random.default_rng(seed)
     points, triangles = regular_square(6)
     metric = from_axes(
         10 ** rng.uniform(-3, 0, 36), 10 ** rng.uniform(-3, 0, 36), rng.uniform(0, np.pi, 36)
     )
+    points, triangles = transform(points), transform.triangles(triangles)
+    metric = transform.metric(metric)
     limits = Limits(max_anisotropy=anisotropy, gradation=gradation)
     got = normalised(metric * 10**scale, points, triangles, complexity=10**target, limits=limits)
     assert nodal_complexity(points, triangles, got) == pytest.approx(10**target, rel=1e-2)
 
 
-def test_without_limits_it_is_a_factor():
-    got = normalised(FRONT, POINTS, TRIANGLES, complexity=500)
-    ratio = got / FRONT
+@everywhere
+def test_without_limits_it_is_a_factor(transform):
+    front, *mesh = carried(transform)
+    ratio = normalised(front, *mesh, complexity=500) / front
     np.testing.assert_allclose(ratio, ratio[0, 0], rtol=1e-9)
 
 

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from reference.meshes import irregular_square
+from reference.transforms import TRANSFORMS
 
 from metrics import (
     MetricError,
@@ -17,6 +18,11 @@ from metrics import (
 )
 
 coordinates = st.floats(-10, 10)
+everywhere = pytest.mark.parametrize("transform", TRANSFORMS, ids=str)
+
+
+def lengths_squared(edges, metric):
+    return np.einsum("...i,...ij,...j->...", edges, tensor.unpack(metric)[..., None, :, :], edges)
 
 
 def test_it_solves_the_three_equations():
@@ -43,16 +49,33 @@ def test_all_edges_are_unit(c):
     np.testing.assert_allclose(np.einsum("ki,ij,kj->k", edges, m, edges), 1, rtol=1e-6)
 
 
-def test_of_an_equilateral_triangle_it_is_the_size():
-    points = 0.3 * np.array([[0, 0], [1, 0], [0.5, np.sqrt(3) / 2]])
-    for got in (triangle_metrics(points, [[0, 1, 2]]), implied_metric(points, [[0, 1, 2]])):
-        np.testing.assert_allclose(got, np.tile(tensor.pack([0.3]), (len(got), 1)), atol=1e-14)
+@everywhere
+def test_all_edges_of_a_mesh_are_unit(transform):
+    points, triangles = irregular_square(8)
+    points, triangles = transform(points * [1, 1e-2]), transform.triangles(triangles)
+    corners = points[triangles]
+    edges = np.roll(corners, -1, axis=1) - corners
+    got = triangle_metrics(points, triangles)
+    np.testing.assert_allclose(lengths_squared(edges, got), 1, rtol=1e-7)
 
 
-def test_a_mesh_is_nearly_unit_and_keeps_its_complexity():
+@everywhere
+def test_of_an_equilateral_triangle_it_is_the_size(transform):
+    points = transform(0.3 * np.array([[0, 0], [1, 0], [0.5, np.sqrt(3) / 2]]))
+    triangle = transform.triangles([[0, 1, 2]])
+    wanted = transform.metric(tensor.pack([0.3]))
+    tolerance = (1e-13 + 20 * transform.rounding) * np.linalg.cond(transform.matrix)
+    for got in (triangle_metrics(points, triangle), implied_metric(points, triangle)):
+        ratios = tensor.simultaneous_reduction(np.tile(wanted, (len(got), 1)), got)[0]
+        np.testing.assert_allclose(ratios, 1, rtol=tolerance)
+
+
+@everywhere
+def test_a_mesh_is_nearly_unit_and_keeps_its_complexity(transform):
     """sqrt(3)/4 for each triangle, also where they grow and are thin."""
     points, triangles = irregular_square(30)
-    points = np.stack([points[:, 0] ** 2, 0.01 * points[:, 1]], axis=1)
+    points = transform(np.stack([points[:, 0] ** 2, 0.01 * points[:, 1]], axis=1))
+    triangles = transform.triangles(triangles)
     metric = implied_metric(points, triangles)
     wanted = np.sqrt(3) / 4 * len(triangles)
     assert nodal_complexity(points, triangles, metric) == pytest.approx(wanted, rel=0.04)
