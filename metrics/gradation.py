@@ -63,7 +63,7 @@ def graded(
     -------
     (n, 3) array of float
         Packed; nowhere coarser than what was given, in no direction. Grading it again changes
-        nothing.
+        nothing, but for roundings where ellipses are thinner than about 100,000 : 1.
 
     Raises
     ------

@@ -187,7 +187,10 @@ def test_any_metric_on_any_mesh(seed, frame, beta):
     metric = transform.metric(metric)
     got = graded(metric, points, triangles, beta, law)
     assert tensor.simultaneous_reduction(metric, got)[0].min() > 1 - 1e-10
-    np.testing.assert_array_equal(graded(got, points, triangles, beta, law), got)
+    again = graded(got, points, triangles, beta, law)
+    thin = np.divide(*tensor.sizes(got).T[::-1]) > 1e5  # their length is known to a few digits
+    np.testing.assert_array_equal(again[~thin], got[~thin])
+    np.testing.assert_allclose(again[thin], got[thin], rtol=1e-11)
     edges, _ = mesh_edges(triangles)
     if law == "h-correction":
         assert np.log(h_shocks(points, edges, got)).max() < np.log(beta) * (1 + 1e-4) + 1e-5
