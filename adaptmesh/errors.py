@@ -28,7 +28,7 @@ class FormatError(AdaptmeshError, OSError):
 
 
 class FormatWarning(UserWarning):
-    """What of a file is passed over in reading, or cannot be kept in writing."""
+    """What of a file, or of features, is passed over in reading, or cannot be kept in writing."""
 
 
 class TransferError(AdaptmeshError, ValueError):

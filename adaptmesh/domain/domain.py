@@ -183,7 +183,8 @@ class Domain(Value):
             The outer ring, in either direction, closed or not; or a shapely ``Polygon`` or
             ``MultiPolygon``, or anything else with a ``__geo_interface__`` of these, or GeoJSON. Of
             a collection of geometries its polygons are taken, if there is nothing else in it. A
-            collection of features becomes what `read_domain` makes of it: a region for each name.
+            collection of features becomes what `read_domain` makes of it: a region for each name;
+            features without geometry are passed over with a `FormatWarning`.
         holes : sequence of (n, 2) array_like, optional
             The rings of the holes, within the outer one; a ring inside a hole is an island.
         names : mapping of str or int to sequence of int, or a choice, optional
@@ -195,7 +196,7 @@ class Domain(Value):
         DomainError
             As `Domain`; and if a hole is not in its shell, or parts of a polygon overlap.
         """
-        from .polygon_input import is_collection, shape_of_polygon, shapes_of
+        from .polygon_input import is_collection, shape_of_polygon, shapes_of, without_empty
         from .polygons import domain_of_shapes
         from .ring_nesting import refuse_rings_out_of_place, rings_with_labels
 
@@ -206,7 +207,7 @@ class Domain(Value):
         if is_collection(outer):
             if names is not None or len(holes):
                 raise DomainError("features have names and holes of their own: leave out yours")
-            return domain_of_shapes(shapes_of(outer))
+            return domain_of_shapes(without_empty(shapes_of(outer)))
         shape = shape_of_polygon(outer, holes)
         shape.refuse_what_is_left_out()
         rings, points = rings_with_labels(shape)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from adaptmesh.errors import DomainError, FormatError
+from adaptmesh.errors import DomainError, FormatError, FormatWarning
 from adaptmesh.io.domains.geojson import shapes_of_geojson
 
 from .outline import Shape
@@ -42,6 +43,22 @@ def is_collection(given: Any) -> bool:
     if hasattr(given, "__geo_interface__"):
         given = given.__geo_interface__
     return isinstance(given, Mapping) and given.get("type") in COLLECTIONS
+
+
+def without_empty(shapes: list[Shape], source: str = "") -> list[Shape]:
+    """The shapes that are not empty: features may have no geometry, or an empty one.
+
+    Those passed over are named in a warning, after where they come from. If all are empty, all are
+    returned, to be refused.
+    """
+    kept = [shape for shape in shapes if not shape.is_empty]
+    if not kept or len(kept) == len(shapes):
+        return shapes
+    left_out = [shape.label for shape in shapes if shape.is_empty]
+    more = f" and {len(left_out) - 3} more" if len(left_out) > 3 else ""
+    what = f"{source}{', '.join(left_out[:3])}{more}: without geometry, passed over"
+    warnings.warn(what, FormatWarning, stacklevel=3)
+    return kept
 
 
 def shape_of_polygon(outer: Any, holes: Sequence[Any]) -> Shape:

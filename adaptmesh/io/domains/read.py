@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Callable
 from pathlib import Path
 
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import Holes, refuse_holes
 from adaptmesh.domain.outline import Outline, Shape
+from adaptmesh.domain.polygon_input import without_empty
 from adaptmesh.domain.polygons import domain_of_shapes
-from adaptmesh.errors import DomainError, FormatError, FormatWarning
+from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.files.located import located, only_our_errors
 
 from .bamg import read_bamg_geometry
@@ -82,24 +82,9 @@ def read_domain(path: str | os.PathLike[str], *, holes: Holes = None) -> Domain:
             refuse_holes(holes, "a mesh, polygons or points in holes")
         if isinstance(raw, Domain):
             return raw
-        return (
-            domain_of_shapes(_without_empty(raw, path)) if isinstance(raw, list) else raw.domain()
-        )
-
-
-def _without_empty(shapes: list[Shape], path: str | os.PathLike[str]) -> list[Shape]:
-    """The shapes that are not empty; features of a file may have no geometry, or an empty one."""
-    kept = [shape for shape in shapes if not shape.is_empty]
-    if not kept or len(kept) == len(shapes):
-        return shapes
-    left_out = [shape.label for shape in shapes if shape.is_empty]
-    more = f" and {len(left_out) - 3} more" if len(left_out) > 3 else ""
-    warnings.warn(
-        f"{path}: {', '.join(left_out[:3])}{more}: without geometry, passed over",
-        FormatWarning,
-        stacklevel=4,
-    )
-    return kept
+        if isinstance(raw, Outline):
+            return raw.domain()
+        return domain_of_shapes(without_empty(raw, f"{path}: "))
 
 
 def read_raw(

@@ -1,10 +1,13 @@
 """Polygons that share borders, made into one domain."""
 
+import json
+
 import numpy as np
 import pytest
 import shapely
+from reference.transforms import TRANSFORMS
 
-from adaptmesh import Domain, repair
+from adaptmesh import Domain, FormatWarning, read_domain, repair
 from adaptmesh.domain.polygons import domain_of_polygons
 from adaptmesh.errors import DomainError
 
@@ -124,3 +127,30 @@ def test_two_borders_of_one_name_are_refused():
 def test_what_is_no_polygon_is_refused(polygons, message):
     with pytest.raises(DomainError, match=message):
         domain_of_polygons(polygons, [None] * len(polygons))
+
+
+@pytest.mark.parametrize("transform", TRANSFORMS, ids=str)
+def test_features_without_geometry_are_passed_over_as_in_files(transform, tmp_path):
+    ring = transform([(0, 0), (1, 0), (1, 1), (0, 1)])
+    square = {"type": "Polygon", "coordinates": [[*ring.tolist(), ring[0].tolist()]]}
+    empty = dict(square, coordinates=[])
+    features = [
+        {"type": "Feature", "geometry": geometry, "properties": {"name": name}}
+        for geometry, name in (
+            (None, "none"),
+            (square, "land"),
+            (empty, "no"),
+        )
+    ]
+    collection = {"type": "FeatureCollection", "features": features}
+    path = tmp_path / "some.geojson"
+    path.write_text(json.dumps(collection))
+    for read in (lambda: Domain.polygon(collection), lambda: read_domain(path)):
+        with pytest.warns(FormatWarning, match="'none'.*, .*'no'.*: without geometry") as caught:
+            domain = read()
+        assert caught[0].filename == __file__
+        area = domain.area / abs(transform.determinant)
+        assert area == pytest.approx(1, rel=1e-12 + 20 * transform.rounding)
+        assert list(domain.region_names) == ["land"]
+    with pytest.raises(DomainError, match="is empty"):
+        Domain.polygon(dict(collection, features=features[::2]))
