@@ -8,6 +8,11 @@
 //        A-----------------B      chord: length by its ends, l(A, B)
 //        A--------M--------B      fed with M: l(A, M) + l(M, B); both agree -> two pieces,
 //                                 else two chords, asked about in the next round
+//
+// A length by its ends takes the geometric mean of the metrics there for the metric half way. That
+// of two thin ellipses turned against each other is nearly round, and lengths in it are far too
+// small: where the axes turn, a chord and its halves can agree on a third of the true length. The
+// speeds at the ends still do: see `by_speeds`.
 #pragma once
 
 #include <algorithm>
@@ -46,6 +51,10 @@ class EdgeSampler {
     // From a thousandth of the edge on, chords may be longer than asked for.
     static constexpr int FINE_DEPTH = 10;
     static constexpr double LONGEST_FINE_CHORD = 4.0;
+    // Axes turn where a length by the ends is less than that by the speeds by more than this share,
+    // which is 2/3 at the most between equal speeds. With less, meshes of layers that bend, which
+    // are measured well by the ends, would change.
+    static constexpr double TURNED = 0.46;
     static constexpr int DEEPEST = 1000;    // the end of halving doubles
     static constexpr double UNSEEN = 0.02;  // share of an edge, see moments()
 
@@ -168,6 +177,7 @@ class EdgeSampler {
         int depth;
         Station from, to;
         double length;
+        bool is_by_speeds = false;  // as are all parts of it
     };
 
     struct Halved {
@@ -184,12 +194,38 @@ class EdgeSampler {
                                 dt * v.y)};
     }
 
+    // The length of a chord is that of its vector at the metric there.
+    double speed(const Chord& c, const Station& at) const {
+        const Point v = edges_[c.edge].vector;
+        return (c.to.t - c.from.t) * std::sqrt(std::max(at.metric.q(v.x, v.y), 0.0));
+    }
+
+    // Simpson's rule with the geometric mean of the two speeds half way: the same as by the metrics
+    // at the ends where the edge lies along their common axes, and never less.
+    static double by_speeds(double start, double end) {
+        return (start + 4 * std::sqrt(start * end) + end) * (1.0 / 6);
+    }
+
+    static bool is_turned(double by_ends, double by_speeds) {
+        return by_speeds - by_ends > TURNED * by_speeds;
+    }
+
     Halved halve(const Chord& c, const Tensor& metric) const {
         const Station middle{0.5 * (c.from.t + c.to.t), metric, metrics::sqrt_det(metric)};
-        const Chord left = chord(c.edge, c.depth + 1, c.from, middle);
-        const Chord right = chord(c.edge, c.depth + 1, middle, c.to);
-        const double halves = left.length + right.length;
-        const bool agree = std::abs(c.length - halves) <= AGREEMENT * halves;
+        Chord left = chord(c.edge, c.depth + 1, c.from, middle);
+        Chord right = chord(c.edge, c.depth + 1, middle, c.to);
+        double whole = c.length, halves = left.length + right.length;
+        const double start = speed(c, c.from), half_way = speed(c, middle), end = speed(c, c.to);
+        const double whole_by_speeds = by_speeds(start, end);
+        const double first = 0.5 * by_speeds(start, half_way);
+        const double second = 0.5 * by_speeds(half_way, end);
+        if (c.is_by_speeds || is_turned(whole, whole_by_speeds) ||
+            is_turned(halves, first + second)) {
+            whole = whole_by_speeds, halves = first + second;
+            left.length = first, right.length = second;
+            left.is_by_speeds = right.is_by_speeds = true;
+        }
+        const bool agree = std::abs(whole - halves) <= AGREEMENT * halves;
         const double longest = c.depth < FINE_DEPTH ? longest_chord_ : LONGEST_FINE_CHORD;
         return {left, right, halves,
                 (agree && halves <= longest) || halves <= SHORTEST_CHORD || c.depth >= DEEPEST};
