@@ -25,7 +25,7 @@ from .errors import (
 from .generate.delaunay import delaunay
 from .generate.generate import generate
 from .generate.prediction import predict
-from .io import read, read_fields, read_sol, write, write_sol
+from .io import read, read_fields, read_metric, read_sol, write, write_sol
 from .io.domains.read import read_domain
 from .loop.adapt_loop import adapt_loop
 from .loop.errors import LoopError, LoopInterrupted, TransientError, TransientInterrupted
@@ -91,6 +91,7 @@ __all__ = [
     "read",
     "read_domain",
     "read_fields",
+    "read_metric",
     "read_sol",
     "repair",
     "simplify",

@@ -5,7 +5,6 @@ from .background import Background
 from .control import ControlSpace, Metric, Uniform, as_control_space
 from .errors import AdaptmeshError, MetricError
 from .expression import Expression
-from .files import read
 from .from_solution.estimators import (
     doerfler_marking,
     metric_from_indicators,
@@ -96,7 +95,6 @@ __all__ = [
     "normalised",
     "predicted_vertices",
     "qualities",
-    "read",
     "residual_indicators",
     "tensor",
     "triangle_metrics",

@@ -35,9 +35,9 @@ def check_folder(path: Path) -> None:
 
 def is_outline(path: Path) -> bool:
     """Whether a file holds a domain but no mesh, by its suffix."""
-    from adaptmesh.io.domains.read import OUTLINE_SUFFIXES
+    from adaptmesh.io.formats import OUTLINES
 
-    return path.suffix.lower() in OUTLINE_SUFFIXES
+    return path.suffix.lower() in OUTLINES
 
 
 def outline_and_mesh(

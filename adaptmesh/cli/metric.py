@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
 import typer
-from numpy.typing import NDArray
 
 from adaptmesh.errors import FormatError
 
@@ -17,7 +14,7 @@ if TYPE_CHECKING:
     from adaptmesh.mesh.mesh import Mesh
     from metrics import ControlSpace
 
-SOLUTION_SUFFIXES = (".sol", ".solb")
+SOLUTION_SUFFIXES = (".sol", ".solb", ".mtr")
 RASTER_SUFFIXES = (".tif", ".tiff", ".asc", ".nc", ".grd")
 
 
@@ -80,7 +77,9 @@ class Request:
             return self.size
         assert self.metric is not None
         if self._holds_a_mesh:
-            return _of_mesh_file(self.metric, self.field)
+            import adaptmesh as am
+
+            return am.read_metric(self.metric, self.field)
         if self.metric.suffix.lower() in RASTER_SUFFIXES:
             import metrics
 
@@ -102,33 +101,6 @@ def _of_solution(path: Path, mesh: Mesh, carrier: Mesh) -> ControlSpace:
     if carrier is not mesh:
         values = values[carrier.kept]
     return Background(carrier.points, carrier.triangles, values)
-
-
-def _of_mesh_file(path: Path, field: str | None) -> ControlSpace:
-    import adaptmesh as am
-    from metrics import Background
-
-    carrier, fields = am.read(path), am.read_fields(path)
-    values = _chosen(path, fields, field, len(carrier.points))
-    return Background(carrier.points, carrier.triangles, values)
-
-
-def _chosen(
-    path: Path, fields: Mapping[str, NDArray[Any]], name: str | None, n_points: int
-) -> NDArray[Any]:
-    """The field of this name; else "metric", or the only one that can be sizes or a metric."""
-    able = [key for key, v in fields.items() if v.shape in ((n_points,), (n_points, 3))]
-    if name is None:
-        name = "metric" if "metric" in able else able[0] if len(able) == 1 else None
-    if name in able:
-        return np.asarray(fields[name])
-    found = ", ".join(map(repr, able)) or "none"
-    if name is None:
-        raise FormatError(
-            f"{path}: expected one field of sizes or metrics at the vertices, found {found}"
-            + ("; choose by --metric-field" if able else "")
-        )
-    raise FormatError(f"{path}: no field {name!r} of sizes or metrics at the vertices; {found}")
 
 
 def graded(

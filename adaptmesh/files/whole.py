@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from adaptmesh.errors import FormatError
-from metrics import text
 
+from . import encodings
 from .located import located
 
 
@@ -31,16 +31,16 @@ def read_bytes(path: Path) -> bytes:
 
 
 def read_text(path: Path) -> str:
-    """Everything that a text file holds, in any encoding that `metrics.text` knows."""
+    """Everything that a text file holds, in any encoding that `encodings` knows."""
     data = read_bytes(path)
     with located(path):
         return text_of(data)
 
 
 def text_of(data: bytes) -> str:
-    """The text that bytes hold, see `metrics.text`; a `FormatError` if they are no text."""
+    """The text that bytes hold, see `encodings`; a `FormatError` if they are no text."""
     try:
-        return text.text_of(data)
+        return encodings.text_of(data)
     except ValueError as error:
         raise FormatError(str(error)) from None
 
@@ -48,7 +48,7 @@ def text_of(data: bytes) -> str:
 def without_mark(data: bytes) -> bytes:
     """The bytes of a file, text or binary; of a text with a byte-order mark as plain UTF-8."""
     try:
-        return text.without_mark(data)
+        return encodings.without_mark(data)
     except ValueError as error:
         raise FormatError(str(error)) from None
 

@@ -1,9 +1,15 @@
-"""The file formats by extension; a new one is a row of `FORMATS` and a module beside this one."""
+"""The formats of files by extension; a new one is a row here and a module in `meshes` or `domains`.
+
+A module in `meshes` has ``decode(data) -> Content`` and ``encode(content, **options) -> bytes``;
+or, where a mesh is more than one file, ``load(path, fields)`` and ``save(path, content)`` as
+`Format` has them. A module is imported when the first file of its kind is read or written.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 
 from adaptmesh.errors import FormatError
@@ -18,12 +24,12 @@ class Format:
 
     Parameters
     ----------
-    load : callable
-        ``load(path, fields)`` gives what the file says; with `fields` false, files beside it that
-        hold only fields need not be read.
-    save : callable
-        ``save(path, content, **options)`` gives the bytes of each file to be written; it writes
-        none itself.
+    reader : str
+        The module in `adaptmesh.io.meshes` that reads it.
+    writer : str, optional
+        That which writes it, if it is another.
+    has_more_files : bool
+        Whether a mesh may be more than one file.
     options : frozenset of str
         The keywords of `save`.
     required : bool
@@ -34,123 +40,68 @@ class Format:
         Whether it tells holes and regions by points in them.
     """
 
-    load: Callable[[Path, bool], Content]
-    save: Callable[..., Mapping[Path, bytes]]
+    reader: str
+    writer: str = ""
+    has_more_files: bool = False
     options: frozenset[str] = frozenset()
     required: bool = False
     periodic: bool = True
     seeds: bool = False
 
+    def load(self, path: Path, fields: bool) -> Content:
+        """What a file says; without `fields`, files with nothing but fields need not be read."""
+        module = import_module(f"adaptmesh.io.meshes.{self.reader}")
+        if self.has_more_files:
+            content: Content = module.load(path, fields)
+            return content
+        data = read_bytes(path)
+        with located(path):
+            content = module.decode(data)
+        return content
 
-def _load_vtu(path: Path, fields: bool) -> Content:
-    from adaptmesh.io.meshes.vtu import decode
-
-    data = read_bytes(path)
-    with located(path):
-        return decode(data)
-
-
-def _save_vtu(path: Path, content: Content) -> dict[Path, bytes]:
-    from adaptmesh.io.meshes.vtu import encode
-
-    return {path: encode(content)}
-
-
-def _load_vtk(path: Path, fields: bool) -> Content:
-    from adaptmesh.io.meshes.vtk import decode
-
-    data = read_bytes(path)
-    with located(path):
-        return decode(data)
-
-
-def _save_vtk(path: Path, content: Content, **options: bool) -> dict[Path, bytes]:
-    from adaptmesh.io.meshes.vtk import encode
-
-    return {path: encode(content, **options)}
-
-
-def _load_gmsh(path: Path, fields: bool) -> Content:
-    from adaptmesh.io.meshes.msh import decode
-
-    data = read_bytes(path)
-    with located(path):
-        return decode(data)
-
-
-def _save_gmsh(path: Path, content: Content, **options: object) -> dict[Path, bytes]:
-    from adaptmesh.io.meshes.gmsh import encode
-
-    return {path: encode(content, **options)}  # type: ignore[arg-type]
-
-
-def _load_medit(path: Path, fields: bool) -> Content:
-    from adaptmesh.io.meshes.medit import decode
-    from adaptmesh.io.meshes.sol import add_companions
-
-    data = read_bytes(path)
-    with located(path):
-        content = decode(data, binary=path.suffix.lower() == ".meshb")
-    if fields:
-        add_companions(content, path)
-    return content
-
-
-def _save_medit(path: Path, content: Content) -> dict[Path, bytes]:
-    from adaptmesh.io.meshes.medit import encode
-    from adaptmesh.io.meshes.sol import encode_companions
-
-    binary = path.suffix.lower() == ".meshb"
-    return {path: encode(content, binary=binary), **encode_companions(content, path)}
-
-
-def _load_xdmf(path: Path, fields: bool) -> Content:
-    from adaptmesh.io.meshes.xdmf import decode
-
-    data = read_bytes(path)
-    with located(path):
-        return decode(data, path.parent)
-
-
-def _save_xdmf(path: Path, content: Content) -> dict[Path, bytes]:
-    from adaptmesh.io.meshes.xdmf import encode
-
-    arrays = path.with_suffix(".h5")
-    xml, hdf = encode(content, arrays.name)
-    return {arrays: hdf, path: xml}
-
-
-def _load_triangle(path: Path, fields: bool) -> Content:
-    from adaptmesh.io.meshes.triangle import decode
-
-    return decode(path)
-
-
-def _save_triangle(path: Path, content: Content) -> Mapping[Path, bytes]:
-    from adaptmesh.io.meshes.triangle import encode
-
-    return encode(content, path)
+    def save(self, path: Path, content: Content, **options: object) -> Mapping[Path, bytes]:
+        """The bytes of each file to be written; none is written yet."""
+        module = import_module(f"adaptmesh.io.meshes.{self.writer or self.reader}")
+        if self.has_more_files:
+            files: Mapping[Path, bytes] = module.save(path, content, **options)
+            return files
+        return {path: module.encode(content, **options)}
 
 
 FORMATS: dict[str, Format] = {
-    ".vtu": Format(_load_vtu, _save_vtu),
-    ".vtk": Format(_load_vtk, _save_vtk, frozenset({"binary"})),
-    ".msh": Format(_load_gmsh, _save_gmsh, frozenset({"version", "binary"})),
-    ".mesh": Format(_load_medit, _save_medit, required=True),
-    ".meshb": Format(_load_medit, _save_medit, required=True, periodic=False),
-    ".xdmf": Format(_load_xdmf, _save_xdmf),
-    ".ele": Format(_load_triangle, _save_triangle, seeds=True),
+    ".vtu": Format("vtu"),
+    ".vtk": Format("vtk", options=frozenset({"binary"})),
+    ".msh": Format("msh", "gmsh", options=frozenset({"version", "binary"})),
+    ".mesh": Format("medit", has_more_files=True, required=True),
+    ".meshb": Format("medit", has_more_files=True, required=True, periodic=False),
+    ".xdmf": Format("xdmf", has_more_files=True),
+    ".xmf": Format("xdmf", has_more_files=True),
+    ".ele": Format("triangle", has_more_files=True, seeds=True),
 }
-"""Format by extension in lower case."""
+"""Format of meshes by extension in lower case."""
+
+OUTLINES = {
+    ".geojson": "geojson:read_geojson",
+    ".json": "geojson:read_geojson",
+    ".wkt": "wkt:read_wkt",
+    ".shp": "shapefile:read_shapefile",
+    ".poly": "poly:read_poly",
+    ".svg": "drawings.svg:read_svg",
+    ".dxf": "drawings.dxf:read_dxf",
+    ".geo": "geo.model:read_geo",
+    ".g": "bamg:read_bamg_geometry",
+    ".gmesh": "bamg:read_bamg_geometry",
+}
+"""Module in `adaptmesh.io.domains` and its function, by the extension of files that hold a domain
+but no mesh."""
 
 
 def format_of(path: Path) -> Format:
-    """The format that the extension of a path tells."""
-    found = FORMATS.get(path.suffix.lower())
+    """The format of meshes that the extension of a path tells."""
+    suffix = path.suffix.lower()
+    found = FORMATS.get(suffix)
     if found is None:
-        from adaptmesh.io.domains.read import OUTLINE_SUFFIXES  # which reads meshes, too
-
-        if path.suffix.lower() in OUTLINE_SUFFIXES:
+        if suffix in OUTLINES:
             raise FormatError(
                 f"{path}: {path.suffix!r} is the extension of an outline, which read_domain reads, "
                 f"not of a mesh; those are {', '.join(FORMATS)}"

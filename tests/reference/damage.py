@@ -14,10 +14,9 @@ import pytest
 from reference.whole_files import WHOLE
 
 import adaptmesh as am
-import metrics
 from adaptmesh import io
 from adaptmesh.errors import FormatWarning
-from adaptmesh.io.domains.read import OUTLINE_SUFFIXES
+from adaptmesh.io.formats import OUTLINES
 
 MEMORY = 1 << 30  # bytes that reading a file of some kB may take, beyond what is in use
 SECONDS = 20  # of processor time, where milliseconds are usual
@@ -162,13 +161,12 @@ def readers_of(path):
     if path.name in HISTORIES:
         return [HISTORIES[path.name]]
     if suffix == ".mtr":
-        return [metrics.read]
+        return [io.read_metric]
     if suffix in (".sol", ".solb"):
         return [io.read_sol]
-    if suffix in OUTLINE_SUFFIXES:
+    if suffix in OUTLINES:
         return [read_domain, repaired]
-    by_metrics = [metrics.read] if suffix in (".vtu", ".msh", ".mesh") else []
-    return [read_mesh, io.read_fields, read_domain, *by_metrics]
+    return [read_mesh, io.read_fields, read_domain, io.read_metric]
 
 
 def read_history(path):

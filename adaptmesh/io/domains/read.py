@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
+from typing import TypeAlias
 
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import Holes, refuse_holes
@@ -13,14 +14,12 @@ from adaptmesh.domain.polygon_input import without_empty
 from adaptmesh.domain.polygons import domain_of_shapes
 from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.files.located import located, only_our_errors
+from adaptmesh.io.formats import FORMATS, OUTLINES
+from adaptmesh.io.read import read_mesh_or_outline
 
-from .bamg import read_bamg_geometry
-from .drawings import Drawing, read_dxf, read_svg
-from .geo import read_geo
-from .geojson import read_geojson
-from .poly import read_poly
-from .shapefile import read_shapefile
-from .wkt import read_wkt
+from .drawings.drawing import Drawing
+
+Raw: TypeAlias = Domain | Outline | Drawing | list[Shape]
 
 
 def read_domain(path: str | os.PathLike[str], *, holes: Holes = None) -> Domain:
@@ -87,49 +86,29 @@ def read_domain(path: str | os.PathLike[str], *, holes: Holes = None) -> Domain:
         return domain_of_shapes(without_empty(raw, f"{path}: "))
 
 
-def read_raw(
-    path: str | os.PathLike[str], holes: Holes = None
-) -> Domain | Outline | Drawing | list[Shape]:
+def read_raw(path: str | os.PathLike[str], holes: Holes = None) -> Raw:
     """What is in a file that `read_domain` can read, before it is checked.
 
     A script becomes a domain at once, with these holes.
     """
     path = Path(path)
-    if path.suffix.lower() == ".geo":
-        with only_our_errors(path), located(path, DomainError):
-            return read_geo(path, holes)
-    reader = _READERS.get(path.suffix.lower(), _domain_of_mesh_file)
+    suffix = path.suffix.lower()
     with only_our_errors(path), located(path, DomainError):
-        return reader(path)
+        if suffix not in OUTLINES:
+            return _domain_of_mesh_file(path)
+        module, function = OUTLINES[suffix].split(":")
+        reader = getattr(import_module(f"adaptmesh.io.domains.{module}"), function)
+        raw: Raw = reader(path, holes) if suffix == ".geo" else reader(path)
+        return raw
 
 
 def _domain_of_mesh_file(path: Path) -> Domain | Outline:
-    from adaptmesh.io import FORMATS, read_mesh_or_outline
-
     if path.suffix.lower() not in FORMATS:
         raise FormatError(
             f"the extension {path.suffix!r} is not known; known are those of outlines, "
-            f"{', '.join(OUTLINE_SUFFIXES)}, and of meshes, {', '.join(FORMATS)}"
+            f"{', '.join(OUTLINES)}, and of meshes, {', '.join(FORMATS)}"
         )
-
     found = read_mesh_or_outline(path)
     if isinstance(found, Outline):
         return found
     return Domain.of_mesh(found) if found.domain is None else found.domain
-
-
-_READERS: dict[str, Callable[[Path], Domain | Outline | Drawing | list[Shape]]] = {
-    ".geojson": read_geojson,
-    ".json": read_geojson,
-    ".wkt": read_wkt,
-    ".shp": read_shapefile,
-    ".poly": read_poly,
-    ".svg": read_svg,
-    ".dxf": read_dxf,
-    ".geo": read_geo,
-    ".g": read_bamg_geometry,
-    ".gmesh": read_bamg_geometry,
-}
-
-OUTLINE_SUFFIXES = tuple(_READERS)
-"""Of files that hold a domain but no mesh."""

@@ -25,6 +25,7 @@ import json
 import re
 import warnings
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 
@@ -32,7 +33,7 @@ from adaptmesh.errors import FormatError, FormatWarning
 from adaptmesh.files.bounded import read_json
 from adaptmesh.files.located import located
 from adaptmesh.files.records import table
-from adaptmesh.files.whole import text_of
+from adaptmesh.files.whole import read_bytes, text_of
 from adaptmesh.mesh.incoming import Content, refuse_cells
 from adaptmesh.mesh.periodic_sides import Rows, checked_rows
 from adaptmesh.types import Array
@@ -49,6 +50,7 @@ from .medit_keywords import (
     opened,
     text_file,
 )
+from .sol import add_companions, encode_companions
 
 # columns of integers, the last of which is the reference
 _CELLS = {"Edges": 3, "Triangles": 4, "EdgesP2": 4, "TrianglesP2": 7}
@@ -62,6 +64,22 @@ _PERIODIC = re.compile(r"^#[ \t]*adaptmesh periodic (\[.*\])[ \t]*$", re.MULTILI
 _COUNTS = re.compile(r"^# adaptmesh counts (\{[^\n]{1,500}\})", re.MULTILINE)
 _OURS = re.compile(r"#[ \t]*adaptmesh (edge|region)\b")
 _COMMENT = re.compile(r'#[ \t]*adaptmesh (edge|region) (-?[0-9]{1,10}) (".*")[ \t]*')
+
+
+def load(path: Path, fields: bool) -> Content:
+    """What a mesh and, with `fields`, the solutions beside it say."""
+    data = read_bytes(path)
+    with located(path):
+        content = decode(data, binary=path.suffix.lower() == ".meshb")
+    if fields:
+        add_companions(content, path)
+    return content
+
+
+def save(path: Path, content: Content) -> dict[Path, bytes]:
+    """The bytes of a mesh and of its solutions."""
+    binary = path.suffix.lower() == ".meshb"
+    return {path: encode(content, binary=binary), **encode_companions(content, path)}
 
 
 # ---------------------------------------------------------------------------------------- reading

@@ -31,7 +31,8 @@ from .medit_keywords import MeditFile, binary_file, count, dimension, opened, te
 from .spatial import flat
 
 SCALAR, VECTOR, TENSOR = 1, 2, 3
-_PLACES = ("SolAtVertices", "SolAtTriangles")
+AT_VERTICES = "SolAtVertices"
+_PLACES = (AT_VERTICES, "SolAtTriangles")
 _MOST_TYPES = 100
 
 
@@ -144,7 +145,7 @@ def encode_companions(content: Content, mesh_path: Path) -> dict[Path, bytes]:
             data = encode(values, tensor=False, place=place, binary=binary)
             out[companion(mesh_path, name)] = data
     if content.metric is not None:
-        data = encode(content.metric, tensor=True, place=_PLACES[0], binary=binary)
+        data = encode(content.metric, tensor=True, place=AT_VERTICES, binary=binary)
         out[companion(mesh_path, None)] = data
     return out
 
@@ -155,7 +156,7 @@ def add_companions(content: Content, mesh_path: Path) -> None:
         data = read_bytes(path)
         with located(path):
             found = decode(data, binary=path.suffix == ".solb")
-            at_points = found.place == _PLACES[0]
+            at_points = found.place == AT_VERTICES
             rows = len(content.points if at_points else content.triangles)
             if len(found.values) != rows:
                 raise FormatError(

@@ -36,7 +36,7 @@ from .triangle_tables import COUNTS, END, OURS, Table, read_points, read_segment
 # ---------------------------------------------------------------------------------------- writing
 
 
-def encode(content: Content, path: Path) -> dict[Path, bytes]:
+def save(path: Path, content: Content) -> dict[Path, bytes]:
     """The bytes of `.node`, `.poly` and `.ele`."""
     n, m, k = len(content.points), len(content.triangles), len(content.edges)
     point_fields = dict(content.point_fields)
@@ -108,7 +108,7 @@ def _name_comments(kind: str, names: Mapping[str, int]) -> list[str]:
 # ---------------------------------------------------------------------------------------- reading
 
 
-def decode(path: Path) -> Content:
+def load(path: Path, fields: bool) -> Content:
     """What `.ele`, `.node` and, if it is there, `.poly` say."""
     ele, node = Table(path), Table(path.with_suffix(".node"))
     points = read_points(node)

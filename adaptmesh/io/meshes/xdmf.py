@@ -28,6 +28,8 @@ import numpy as np
 from adaptmesh.errors import FormatError, FormatWarning
 from adaptmesh.files.bounded import read_json, read_xml
 from adaptmesh.files.hdf5 import import_h5py
+from adaptmesh.files.located import located
+from adaptmesh.files.whole import read_bytes
 from adaptmesh.mesh.incoming import Content, check_vertices, refuse_cells
 from adaptmesh.mesh.periodic_sides import Rows, checked_rows
 from adaptmesh.types import Array
@@ -47,6 +49,20 @@ _MIXED = {1: "polyvertex", 2: "polyline", 4: "triangle", 34: "edge_3", 36: "tri_
 _CORNERS = {"triangle_6": "triangle", "tri_6": "triangle", "edge_3": "polyline"}
 """What is left of cells of second order."""
 _MOST_NODES = 6
+
+
+def load(path: Path, fields: bool) -> Content:
+    """What a file and its arrays beside it say."""
+    data = read_bytes(path)
+    with located(path):
+        return decode(data, path.parent)
+
+
+def save(path: Path, content: Content) -> dict[Path, bytes]:
+    """The bytes of both files."""
+    arrays = path.with_suffix(".h5")
+    xml, hdf = encode(content, arrays.name)
+    return {arrays: hdf, path: xml}
 
 
 # ---------------------------------------------------------------------------------------- writing

@@ -12,7 +12,7 @@ from reference.whole_files import WHOLE
 import adaptmesh as am
 from adaptmesh import io
 from adaptmesh.io.domains.geo import by_gmsh
-from adaptmesh.io.domains.read import OUTLINE_SUFFIXES
+from adaptmesh.io.formats import OUTLINES
 
 SEEDS = 60
 
@@ -20,7 +20,7 @@ SEEDS = 60
 def test_no_format_is_forgotten():
     assert set(WHOLE) == {
         *io.FORMATS,
-        *OUTLINE_SUFFIXES,
+        *OUTLINES,
         ".sol",
         ".solb",
         ".mtr",

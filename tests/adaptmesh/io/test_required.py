@@ -6,7 +6,7 @@ import pytest
 import adaptmesh as am
 from adaptmesh import io
 from adaptmesh.errors import FormatError
-from adaptmesh.io.meshes.required import required_items
+from adaptmesh.io.required import required_items
 
 SUFFIXES = [".mesh", ".meshb"]
 

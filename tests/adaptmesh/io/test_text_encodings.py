@@ -7,11 +7,10 @@ import pytest
 from reference.whole_files import WHOLE, wheel
 
 import adaptmesh as am
-import metrics
 from adaptmesh import io
 from adaptmesh.errors import FormatError
-from adaptmesh.io.domains.read import OUTLINE_SUFFIXES
-from metrics.text import text_of
+from adaptmesh.files.encodings import text_of
+from adaptmesh.io.formats import OUTLINES
 
 MARKED = {
     "utf-8 with a mark": lambda text: codecs.BOM_UTF8 + text.encode(),
@@ -49,9 +48,9 @@ def read(path):
     if path.suffix in (".sol", ".solb"):
         return [io.read_sol(path)], {}
     if path.suffix == ".mtr":
-        carried = metrics.read(path)
+        carried = io.read_metric(path)
         return [carried(carried.points)], {}
-    if path.suffix in OUTLINE_SUFFIXES:
+    if path.suffix in OUTLINES:
         domain = am.read_domain(path)
         return [domain.points, domain.segments, domain.segment_tags], domain.names
     mesh = io.read(path)
