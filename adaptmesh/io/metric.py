@@ -130,13 +130,13 @@ def _chosen(fields: Mapping[str, Array], name: str | None, n: int) -> Array:
         name = _METRIC if _METRIC in able else next(iter(able)) if len(able) == 1 else None
     if name in able:
         return able[name]
-    found = ", ".join(map(repr, able)) or "none"
+    listed = ", ".join(map(repr, able)) or "none"
     if name is None:
         raise FormatError(
-            f"expected one field of sizes or metrics at the vertices, got {found}"
+            f"expected one field of sizes or metrics at the vertices, got {listed}"
             + ("; choose one by field (--metric-field)" if able else "")
         )
-    raise FormatError(f"has no field {name!r} of sizes or metrics at the vertices; it has {found}")
+    raise FormatError(f"has no field {name!r} of sizes or metrics at the vertices; it has {listed}")
 
 
 def _as_metric(values: Array, n: int) -> Array | None:

@@ -91,7 +91,7 @@ def test_written_by_meshio(tmp_path, suffix, values, wanted):
     assert_is(am.read_metric(path, "other"), 2 * SIZES)
     with pytest.raises(
         am.AdaptmeshError,
-        match=r"no field 'size' of .*; it has '(metric', 'other|other', 'metric)'",
+        match=r"no field 'size' of .*; it has '(metric|other)', '",
     ):
         am.read_metric(path, "size")
 
@@ -102,23 +102,16 @@ def test_the_only_point_data_needs_no_name(tmp_path):
     assert_is(am.read_metric(path), SIZES)
     two = {"h": SIZES, "k": SIZES}
     meshio.Mesh(np.insert(POINTS, 2, 0, axis=1), {"triangle": TRIANGLES}, two).write(path)
-    with pytest.raises(
-        am.AdaptmeshError, match=r"expected one field .*, got 'h', 'k'; choose one by field"
-    ):
+    with pytest.raises(am.AdaptmeshError, match=r"got 'h', 'k'; choose one by field"):
         am.read_metric(path)
 
 
 @pytest.mark.parametrize(
     ("suffix", "options"),
     [
-        (".vtu", {}),
-        (".vtk", {}),
-        (".msh", {}),
+        *((suffix, {}) for suffix in (".vtu", ".vtk", ".msh", ".mesh", ".meshb", ".ele")),
         (".msh", {"version": "2.2"}),
-        (".mesh", {}),
-        (".meshb", {}),
-        (".ele", {}),
-    ],  # fmt: skip
+    ],
 )
 def test_what_adaptmesh_writes(tmp_path, suffix, options):
     mesh = am.generate(am.Domain.rectangle(0, 0, 1, 1), 0.5)
@@ -144,7 +137,7 @@ def test_what_adaptmesh_writes(tmp_path, suffix, options):
         (
             "a.mtr",
             "4 2\n" + rows(TENSORS[:, :2]),
-            "expected rows of 1 size or 3 entries of a metric, got 2",
+            "expected rows of 1 size or .*, got 2",
         ),
         ("a.mtr", "4 1\n0.1 0.2 0.3", "cut short: 4 rows of 1 numbers, 3 words left"),
         ("a.mtr", "4.5 1", "an integer was expected, found b'4.5'"),
@@ -162,11 +155,11 @@ def test_damaged_values(folder, name, text, message):
     [
         (
             MESH.replace("Triangles 2", "Quadrilaterals 2"),
-            "an integer was expected|holds no triangles",
+            "integer was expected",
         ),
         (
             MESH.replace("1 2 3 0", "1 2 9 0"),
-            r"a.mesh: triangle 0 has vertices \[0, 1, 8\], but the points are numbered",
+            r"a.mesh: triangle 0 has vertices \[0, 1, 8\]",
         ),
         (MESH.replace("1 2 3 0", "1 2 0 0"), "triangle 0 has vertices"),
         (MESH.replace("1 2 3 0", "1 2 1 0"), "triangle 0 has a vertex twice"),
@@ -190,7 +183,7 @@ def test_files_that_are_missing_or_of_another_kind(folder):
         am.read_metric(folder / "none.mesh")
     with pytest.raises(am.AdaptmeshError, match=r"none.vtu: there is no such file"):
         am.read_metric(folder / "none.vtu")
-    with pytest.raises(FormatError, match=r"the extension '.xyz' is not known; known are .vtu"):
+    with pytest.raises(am.FormatError, match=r"the extension '.xyz' is not known; known are .vtu"):
         am.read_metric(folder / "a.xyz")
     (folder / "bad.vtu").write_text("<VTKFile")
     with pytest.raises(am.AdaptmeshError, match=r"bad.vtu: is cut short or not XML"):
@@ -198,10 +191,10 @@ def test_files_that_are_missing_or_of_another_kind(folder):
     (folder / "bad.msh").write_bytes(b"\0\1\2")
     with pytest.raises(am.AdaptmeshError, match=r"bad.msh: does not start"):
         am.read_metric(folder / "bad.msh")
-    with pytest.raises(FormatError, match=r"expected its mesh b.mesh .* beside it, found none"):
+    with pytest.raises(am.FormatError, match=r"expected its mesh b.mesh .* beside it, found none"):
         am.read_metric(folder / "b.sol")
     (folder / "a.sol").write_text(sol(SIZES, 1))
-    with pytest.raises(FormatError, match=r"no field 'u' beside it; there is 'metric'"):
+    with pytest.raises(am.FormatError, match=r"no field 'u' beside it; there is 'metric'"):
         am.read_metric(folder / "a.mesh", field="u")
     with pytest.raises(am.AdaptmeshError, match="has the values itself"):
         am.read_metric(folder / "a.sol", field="x")
@@ -270,7 +263,7 @@ def test_one_of_several_fields_of_medit(folder):
     assert_is(am.read_metric(folder / "a.mesh"), SIZES)
     (folder / "a.v.sol").write_text(sol(2 * SIZES, 1))
     assert_is(am.read_metric(folder / "a.mesh", field="v"), 2 * SIZES)
-    with pytest.raises(FormatError, match="other fields: 'u', 'v'; choose one"):
+    with pytest.raises(am.FormatError, match="other fields: 'u', 'v'; choose one"):
         am.read_metric(folder / "a.mesh")
     (folder / "a.sol").write_text(sol(3 * SIZES, 1))
     assert_is(am.read_metric(folder / "a.mesh"), 3 * SIZES)
@@ -280,5 +273,5 @@ def test_one_of_several_fields_of_medit(folder):
 def test_outside_of_the_mesh(folder):
     (folder / "a.sol").write_text(sol(SIZES, 1))
     assert_is(am.read_metric(folder / "a.sol", outside="clamp"), SIZES)
-    with pytest.raises(MetricError, match="outside"):
+    with pytest.raises(am.MetricError, match="outside"):
         am.read_metric(folder / "a.sol", outside="error")([[2.0, 2.0]])
