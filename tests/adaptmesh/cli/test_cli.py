@@ -64,7 +64,7 @@ def test_help_has_an_example_for_each_command(run):
 def test_help_loads_nothing_heavy():
     code = (
         "import sys\nsys.argv = ['adaptmesh', '--help']\n"
-        "import atexit\nfrom adaptmesh.cli import main\n"
+        "import atexit\nfrom adaptmesh.cli.commands import main\n"
         "heavy = ('vtkmodules', 'pyvista', 'meshio', 'matplotlib', 'shapely')\n"
         "atexit.register(lambda: print('LOADED', [m for m in heavy if m in sys.modules]))\n"
         "main()\n"

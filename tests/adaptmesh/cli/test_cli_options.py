@@ -73,7 +73,10 @@ def test_the_field_is_chosen_by_name(run):
     am.write("two.vtu", mesh, fine=size(mesh.points) / 2, coarse=size(mesh.points))
     arguments = ("generate", "plate.geojson", "-m", "two.vtu", "-o", "out.vtu")
     ambiguous = run(*arguments)
-    assert ambiguous.exit_code == 1 and "'fine', 'coarse'; choose by --metric" in ambiguous.stderr
+    assert (
+        ambiguous.exit_code == 1
+        and "'fine', 'coarse'; choose one by field (--metric-field)" in ambiguous.stderr
+    )
     assert run(*arguments, "--metric-field", "none").exit_code == 1
     assert not Path("out.vtu").exists()
     done(run(*arguments, "--metric-field", "coarse"))
@@ -82,7 +85,7 @@ def test_the_field_is_chosen_by_name(run):
 
 def test_what_is_no_metric_is_refused(run):
     nothing = run("adapt", "plain.vtu", "-m", "plain.vtu", "-o", "out.vtu")
-    assert nothing.exit_code == 1 and "found none" in nothing.stderr
+    assert nothing.exit_code == 1 and "got none" in nothing.stderr
     Path("a.txt").write_text("")
     usage(run("adapt", "plain.vtu", "-m", "a.txt", "-o", "out.vtu"), "or a raster")
 
@@ -365,7 +368,7 @@ def test_a_closed_pipe_does_not_stop_the_work(run, command):
 
 def complete(words):
     """What bash is offered for the last word."""
-    code = "from adaptmesh.cli import main\nmain()"
+    code = "from adaptmesh.cli.commands import main\nmain()"
     environment = {
         **os.environ,
         "_ADAPTMESH_COMPLETE": "complete_bash",
