@@ -124,7 +124,7 @@ def iceland(coarsening: float = 1.0) -> Case:
 
 def _data_file(name: str) -> Path:
     """A data file of the package; in a source tree it lies with the examples."""
-    package = Path(__file__).parent
+    package = Path(__file__).parent.parent
     installed = package / "data" / name
     return installed if installed.is_file() else package.parent / "examples" / "data" / name
 
