@@ -1,7 +1,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import Floats, Ints
+from .types import Floats, Ints
 
 def check_sizes(sizes: Floats) -> tuple[Floats, int]: ...
 def check_tensors(tensors: Floats) -> tuple[Floats, int]: ...

@@ -15,9 +15,9 @@ from adaptmesh.generate.generate import MAX_VERTICES, generate, graded_within_bu
 from adaptmesh.generate.placement import Samples
 from adaptmesh.generate.prediction import predict
 from adaptmesh.mesh.boundary_polylines import vertices_at
+from adaptmesh.mesh.checks import check_is_mesh
 from adaptmesh.mesh.cleaned import with_edges_once
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.mesh.to_domain import check_is_mesh
 from metrics import ControlSpace
 
 from .edit import Edited, Editing, edited
@@ -51,7 +51,7 @@ def adapt(
     Parameters
     ----------
     mesh : Mesh
-        If it has no `Mesh.domain` (it was read from a file), `Domain.of_mesh` finds it.
+        If it has no `Mesh.domain` (it was read from a file), `Mesh.to_domain` finds it.
     metric : array_like, number, callable, or control space
         Values at the vertices: sizes (n,), packed metrics (n, 3) = (m11, m12, m22), or tensors
         (n, 2, 2); or anything else that `generate` takes.
@@ -72,7 +72,7 @@ def adapt(
     straight_tolerance : float, optional
         For a mesh without a domain: how far the vertices of its border may be off a straight line
         on which they are no corners. If not given, by the digits of the coordinates, see
-        `Domain.of_mesh`. How many corners were found, and why, is in ``domain.corners_found`` of
+        `Mesh.to_domain`. How many corners were found, and why, is in ``domain.corners_found`` of
         the result, and `measure` prints it.
     placement, max_vertices, progress
         As in `generate`; `placement` is of no account where the mesh is edited.
@@ -87,7 +87,7 @@ def adapt(
         raise ValueError(
             "straight_tolerance finds the domain of a mesh; this mesh has one: leave it out"
         )
-    domain = mesh.domain or Domain.of_mesh(mesh, straight_tolerance=straight_tolerance)
+    domain = mesh.domain or mesh.to_domain(straight_tolerance=straight_tolerance)
     field = control_space_on(mesh, metric)
     if gradation is not None:
         field = graded_within_budget(domain, field, gradation, max_vertices)

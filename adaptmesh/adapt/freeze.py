@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh.curves import Curve, Line
+from adaptmesh.domain.data import with_fields
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.periodic import periodic_pair, with_partners
+from adaptmesh.domain.periodic_corners import with_pair
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.types import Floats
 
@@ -28,10 +30,10 @@ def frozen_domain(domain: Domain, mesh: Mesh, names: Iterable[str]) -> Domain:
     rest = ~np.isin(domain.segment_tags, numbers)
     build = _of_curves if domain.curved.curves else _of_segments
     out = build(domain, edges, rest).with_frozen(*names)
-    out.corners_found = domain.corners_found
+    out = with_fields(out, corners_found=domain.corners_found)
     for pair in domain.periodic:
         tied = periodic_pair(out, pair.first, pair.second, pair.motion, pair.tolerance)
-        out.periodic = (*out.periodic, tied)
+        out = with_pair(out, tied)
     return out
 
 

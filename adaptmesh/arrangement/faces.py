@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +18,7 @@ from numpy.typing import NDArray
 from adaptmesh._core import Fault, triangulate
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.containing import containing_triangles
-from adaptmesh.mesh.validate.subject import edge_keys
+from adaptmesh.topology import components, edge_keys, half_edges
 from adaptmesh.types import Floats, Int64s
 
 from .record import at
@@ -78,12 +77,7 @@ class Faces:
 
     def united(self, edges: NDArray[np.bool_]) -> Int64s:
         """For each face the number of the one it becomes when edges are taken away."""
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-
-        n = self.count
-        links = (np.ones(int(edges.sum())), (self.left[edges], self.right[edges]))
-        return connected_components(coo_array(links, shape=(n, n)), directed=False)[1]
+        return components(self.count, np.stack([self.left[edges], self.right[edges]], axis=1))
 
 
 def find_faces(points: Floats, edges: Int64s) -> Faces:
@@ -118,7 +112,7 @@ def find_faces(points: Floats, edges: Int64s) -> Faces:
             "as small as the rounding of coordinates; choose a larger tolerance"
         ) from fault
     if len(pieces) != len(segments):
-        lost = segments[~np.isin(_keys(segments, n + 4), _keys(pieces, n + 4))][0, 0]
+        lost = segments[~np.isin(edge_keys(segments, n + 4), edge_keys(pieces, n + 4))][0, 0]
         raise DomainError(
             f"a segment from {at(*framed[lost])} passes through other points after the repair: "
             "choose another tolerance"
@@ -135,23 +129,18 @@ def _faces_between(
 
     The face of the frame's first corner is number 0; beyond the frame there is -1.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    m, n = len(triangles), int(segments.max()) + 1
-    halves = np.concatenate([triangles[:, [1, 2]], triangles[:, [2, 0]], triangles[:, [0, 1]]])
-    owner = np.tile(np.arange(m), 3)
-    keys = _keys(halves, n)
+    n = int(segments.max()) + 1
+    halves, owner = half_edges(triangles)
+    keys = edge_keys(halves, n)
     order = np.argsort(keys, kind="stable")
     keys, owner, upward = keys[order], owner[order], (halves[:, 0] < halves[:, 1])[order]
-    wanted = _keys(segments, n)
+    wanted = edge_keys(segments, n)
 
     twin = np.flatnonzero(keys[1:] == keys[:-1])
     at_segment = np.searchsorted(np.sort(wanted), keys[twin])
     locked = np.append(np.sort(wanted), -1)[at_segment] == keys[twin]
     free = twin[~locked]
-    graph = coo_array((np.ones(len(free)), (owner[free], owner[free + 1])), shape=(m, m))
-    face = connected_components(graph, directed=False)[1].astype(np.int64)
+    face = components(len(triangles), np.stack([owner[free], owner[free + 1]], axis=1))
     outside = face[np.flatnonzero((triangles == corner).any(axis=1))[0]]
     face = np.where(face == outside, 0, np.where(face < outside, face + 1, face))
 
@@ -165,7 +154,3 @@ def _faces_between(
     left = faces[np.where(turned, low_right, low_left)]
     right = faces[np.where(turned, low_left, low_right)]
     return face, left, right
-
-
-def _keys(edges: NDArray[np.integer[Any]], n: int) -> Int64s:
-    return edge_keys(edges[:, 0], edges[:, 1], n)

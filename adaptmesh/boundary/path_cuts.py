@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from adaptmesh.domain.domain import Domain
+from adaptmesh.domain.data import DomainData
 from adaptmesh.domain.inscribed_polygon import MESH_TURN
 from adaptmesh.domain.polyline import Chords, Surroundings, chords_along
 from adaptmesh.types import Floats, Index
@@ -47,12 +47,12 @@ class RunParts:
     u: Floats
 
     @classmethod
-    def whole(cls, domain: Domain) -> RunParts:
+    def whole(cls, domain: DomainData) -> RunParts:
         """Each run as a part of itself."""
         lengths = [run.length for run in domain.curved.runs]
         return cls(np.arange(len(lengths)), np.stack([np.zeros(len(lengths)), lengths], axis=1))
 
-    def looks(self, domain: Domain) -> tuple[Index, Floats, Floats]:
+    def looks(self, domain: DomainData) -> tuple[Index, Floats, Floats]:
         """Chords, close to the curve, in order: the part of each, its parameters, its vector."""
         curved = domain.curved
         on_run = curved.segment_runs >= 0
@@ -79,7 +79,7 @@ class RunParts:
         return out
 
 
-def surroundings_of(domain: Domain) -> Surroundings:
+def surroundings_of(domain: DomainData) -> Surroundings:
     """What there is in a domain besides its runs."""
     curved = domain.curved
     vertices = domain.points[curved.is_vertex]
@@ -95,7 +95,7 @@ def surroundings_of(domain: Domain) -> Surroundings:
 
 
 def unit_chords(
-    domain: Domain,
+    domain: DomainData,
     parts: RunParts,
     rest: Sequence[Floats],
     around: Surroundings,

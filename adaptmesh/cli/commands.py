@@ -191,7 +191,7 @@ def adapt(
         request.refuse_empty()
         read = am.read(mesh)
         old = cleaned(read, clean, merge, speaker)
-        outline = am.Domain.of_mesh(old, straight_tolerance=straight_tolerance)
+        outline = old.to_domain(straight_tolerance=straight_tolerance)
         control = request.control_space(read, old)
         control = graded(outline, control, gradation, max_vertices)
         with _meshing(speaker, max_vertices, placement) as options:

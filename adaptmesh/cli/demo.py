@@ -16,7 +16,7 @@ import numpy as np
 
 import adaptmesh as am
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.polygons import domain_of_polygons
+from adaptmesh.domain.polygons import given_of_polygons
 from adaptmesh.types import Floats
 
 Field = Callable[[Floats], Floats]
@@ -113,7 +113,7 @@ def iceland(coarsening: float = 1.0) -> Case:
     return Case(
         name="iceland",
         title="Iceland: the size grows away from the coast",
-        domain=domain_of_polygons([sea, land], ["sea", "land"]),
+        domain=Domain.of_given(given_of_polygons([sea, land], ["sea", "land"])),
         field=size,
         views=(
             View("", "region"),

@@ -60,7 +60,7 @@ def outline_and_mesh(
     if is_outline(path):
         return am.read_domain(path, holes=holes), None
     mesh = am.read(path)
-    return am.Domain.of_mesh(mesh, straight_tolerance=straight_tolerance), mesh
+    return mesh.to_domain(straight_tolerance=straight_tolerance), mesh
 
 
 def cleaned(mesh: Mesh, clean: bool, merge: float | None, speaker: Speaker) -> Mesh:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from adaptmesh.errors import FormatError
 from adaptmesh.mesh.incoming import Content
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.mesh.validate.subject import edge_keys
+from adaptmesh.topology import edge_keys
 from adaptmesh.types import Int64s
 
 from .labels import incoming
@@ -71,10 +71,10 @@ def to_dolfinx(
 
     tagged = mesh.edge_tags != 0
     ends, n = numbering.ends_of_facets(domain), len(mesh.points)
-    keys = edge_keys(ends[:, 0], ends[:, 1], n)
+    keys = edge_keys(ends, n)
     order = np.argsort(keys)
     edges = mesh.edges[tagged]
-    wanted = edge_keys(edges[:, 0], edges[:, 1], n)
+    wanted = edge_keys(edges, n)
     facets = order[np.searchsorted(keys, wanted, sorter=order)].astype(np.int32)
     by_facet = np.argsort(facets)  # as meshtags wants them
     tags = mesh.edge_tags[tagged][by_facet]

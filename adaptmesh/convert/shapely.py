@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
+from adaptmesh.domain.domain import Domain
+from adaptmesh.domain.regions_as_polygons import regions_as_polygons
 
 if TYPE_CHECKING:
-    from shapely import MultiPolygon, Polygon
-
-    from adaptmesh.domain.domain import Domain
+    from shapely import MultiPolygon
 
 __all__ = ["to_shapely"]
 
@@ -28,32 +26,4 @@ def to_shapely(domain: Domain) -> dict[str | None, MultiPolygon]:
         By the name of the region; that of what has no name is None. Lines within a region are left
         out. Neighbours share the points of their borders.
     """
-    import shapely
-
-    from adaptmesh.domain.seeds import regions_beside
-
-    n, pieces = len(domain.points), domain.pieces
-    beside = regions_beside(domain.triangles, domain.triangle_regions, pieces, n)
-    out: dict[str | None, MultiPolygon] = {}
-    for name, number in [(None, 0), *domain.region_names.items()]:
-        left, right = (beside == number).T
-        border = np.concatenate([pieces[left & ~right], pieces[right & ~left][:, ::-1]])
-        if len(border):
-            inside = _faces_left_of(domain.points[border])
-            out[name] = shapely.multipolygons(inside)
-    return out
-
-
-def _faces_left_of(segments: NDArray[np.float64]) -> list[Polygon]:
-    """The faces between segments, (k, 2, 2), that have these on their left."""
-    import shapely
-
-    directed = {(*start, *end) for start, end in segments.tolist()}
-    inside = []
-    for face in shapely.get_parts(shapely.polygonize(shapely.linestrings(segments))):
-        start, end = face.exterior.coords[:2]
-        if not face.exterior.is_ccw:
-            start, end = end, start
-        if (*start, *end) in directed:
-            inside.append(face)
-    return inside
+    return regions_as_polygons(domain)

@@ -11,7 +11,7 @@ from adaptmesh.errors import FormatError
 from adaptmesh.files.located import located
 from adaptmesh.mesh.incoming import Content
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.mesh.validate.subject import edge_keys
+from adaptmesh.topology import edge_keys
 
 from .labels import incoming, members, tags_of_sets
 
@@ -43,9 +43,9 @@ def to_skfem(mesh: Mesh) -> skfem.MeshTri:
 
     # Contiguous in memory, as skfem asks for with a warning otherwise.
     m = skfem.MeshTri(np.ascontiguousarray(mesh.points.T), np.ascontiguousarray(mesh.triangles.T))
-    keys = edge_keys(m.facets[0], m.facets[1], len(mesh.points))
+    keys = edge_keys(m.facets.T, len(mesh.points))
     order = np.argsort(keys)
-    edges = edge_keys(mesh.edges[:, 0], mesh.edges[:, 1], len(mesh.points))
+    edges = edge_keys(mesh.edges, len(mesh.points))
     facets = order[np.searchsorted(keys, edges, sorter=order)]
     boundaries = members(mesh.edge_tags, mesh.names)
     subdomains = members(mesh.regions, mesh.region_names)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from adaptmesh.domain import inputs as domain_input
+from adaptmesh import checks
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats
 
@@ -13,7 +13,7 @@ from adaptmesh.types import Floats
 def checked_points(points: ArrayLike, what: str, least: int) -> Floats:
     """The points of a curve, (n, 2), or a `DomainError` that names it."""
     try:
-        out = domain_input.checked_points(points, "point", least=0)
+        out = checks.checked_points(points, "point", least=0)
     except DomainError as error:
         raise DomainError(f"{what}: {error}") from None
     if len(out) < least:
@@ -25,9 +25,9 @@ def checked_point(point: ArrayLike, what: str) -> Floats:
     out = np.array(point, dtype=np.float64)
     if out.shape != (2,) or not np.isfinite(out).all():
         raise DomainError(f"{what}: {point!r} is no pair of finite numbers")
-    if np.abs(out).max() > domain_input.LARGEST:
+    if np.abs(out).max() > checks.LARGEST:
         raise DomainError(
-            f"{what}: {point!r} is beyond {domain_input.LARGEST:g}, where areas overflow; choose "
+            f"{what}: {point!r} is beyond {checks.LARGEST:g}, where areas overflow; choose "
             "another unit of length"
         )
     return out

@@ -7,17 +7,14 @@ turn by half a degree are as good as the curve.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from adaptmesh.types import Bools, Floats, Index
+from adaptmesh.types import Bools, Floats, Index, Ints
 
+from .data import DomainData
 from .paths import derivatives_of_parts, points_on
-
-if TYPE_CHECKING:
-    from .domain import Domain
-
 
 CHORD, CUBIC = 1e-6, 1e-10
 """How far chords, and cubics, are off the curves at most, as shares of the extent of the domain."""
@@ -49,7 +46,20 @@ class CubicPieces(NamedTuple):
     heights: Floats
 
 
-def cubic_pieces(domain: Domain, chosen: Bools) -> CubicPieces:
+class SomeSides(NamedTuple):
+    """Some of the segments of a domain, by number, with the curves that they are chords of."""
+
+    domain: DomainData
+    segments: Ints
+
+    def cubic_pieces(self) -> CubicPieces:
+        """The sides as straight pieces and short cubics."""
+        chosen = np.zeros(len(self.domain.segments), bool)
+        chosen[self.segments] = True
+        return cubic_pieces(self.domain, chosen)
+
+
+def cubic_pieces(domain: DomainData, chosen: Bools) -> CubicPieces:
     """The pieces of some of the segments of a domain, chosen by number (n,)."""
     curved = domain.curved
     straight = np.flatnonzero(chosen & (curved.segment_runs < 0))
@@ -72,7 +82,7 @@ def cubic_pieces(domain: Domain, chosen: Bools) -> CubicPieces:
     )
 
 
-def _divided(domain: Domain, segment: Index) -> tuple[Index, Floats, Floats]:
+def _divided(domain: DomainData, segment: Index) -> tuple[Index, Floats, Floats]:
     """Parts of the curves of segments: the segment of each, the points and derivatives at its ends.
 
     They are divided until they, and their chords, are as near to the curves as they must be.

@@ -19,8 +19,8 @@ from adaptmesh.arrangement.winding import Passes, winding_changes
 from adaptmesh.types import Int64s
 
 from .hole_depths import hole_depths
-from .outline import Shape
 from .rings import Ring
+from .shape import Shape
 
 
 def owners_of_faces(

@@ -1,9 +1,8 @@
-"""What a domain is made of, checked: points, segments, names, holes and regions."""
+"""What a domain is made of, checked: segments, names, holes, regions and rings."""
 
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -11,6 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from adaptmesh.checks import check_is_mapping, checked_pairs, checked_points, read_only
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats, Ints
 from adaptmesh.value import FrozenMapping
@@ -23,9 +23,6 @@ ByLabel = Mapping[str, Value] | Mapping[int, Value] | Mapping[Label, Value]
 Holes = ArrayLike | str | None
 """Points in the holes, "nesting", or None if they are to be found; see `Domain`."""
 
-LARGEST = 1e75  # coordinate: its fourth power is still a double
-FLAT = 1e-9
-"""Heights that differ by at most this share of the extent are rounding: the points are plane."""
 OR_REPAIR = "or let adaptmesh.repair do it"
 
 
@@ -67,88 +64,6 @@ def refuse_holes(holes: Holes, given: str) -> None:
         )
 
 
-def read_only(array: NDArray[Any]) -> NDArray[Any]:
-    array.flags.writeable = False
-    return array
-
-
-def checked_points(points: ArrayLike, what: str, least: int = 3) -> Floats:
-    """Coordinates (n, 2) that areas can be computed of, or a `DomainError`."""
-    try:
-        if np.iscomplexobj(points):
-            raise TypeError("they are complex")
-        out = np.array(points, dtype=np.float64, order="C")
-    except (TypeError, ValueError) as error:
-        raise DomainError(f"{what}s must be an (n, 2) array of numbers: {error}") from None
-    if out.size == 0:
-        out = out.reshape(0, 2)
-    if out.ndim == 2 and out.shape[1] == 3:
-        out = _without_heights(out, what)
-    if out.ndim != 2 or out.shape[1] != 2:
-        raise DomainError(f"{what}s must be an (n, 2) array, not one of shape {out.shape}")
-    if len(out) < least:
-        raise DomainError(f"{len(out)} {what}s: at least {least} are needed")
-    check_range(out, what)
-    return read_only(out)
-
-
-def check_range(out: Floats, what: str) -> None:
-    """Refuse coordinates of which no exact signs and no areas can be computed."""
-    bad = np.flatnonzero(~np.isfinite(out).all(axis=1))
-    if len(bad):
-        x, y = out[bad[0]]
-        raise DomainError(f"{what} {bad[0]} is ({x}, {y}): coordinates must be finite")
-    bad = np.flatnonzero((np.abs(out) > LARGEST).any(axis=1))
-    if len(bad):
-        x, y = out[bad[0]]
-        raise DomainError(
-            f"{what} {bad[0]} is ({x:g}, {y:g}): areas and squares of coordinates beyond "
-            f"{LARGEST:g} overflow; choose another unit of length"
-        )
-
-
-def _without_heights(points: Floats, what: str) -> Floats:
-    """Points (n, 3) that lie in a plane z = constant without z, or a `DomainError`."""
-    z = points[:, 2]
-    if np.isfinite(points).all() and not is_level(z, points[:, :2]):
-        i = int(np.argmax(np.abs(z - z[0])))
-        raise DomainError(
-            f"{what} {i} is at height {z[i]:g}, and {what} 0 at {z[0]:g}: a domain is plane, give "
-            "[:, :2] of the points"
-        )
-    return np.ascontiguousarray(points[:, :2])
-
-
-def checked_number(value: object, what: str) -> float:
-    """A finite real number, or a `DomainError`."""
-    try:
-        number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError, OverflowError):
-        number = math.nan
-    if not math.isfinite(number) or isinstance(value, str):
-        raise DomainError(f"{what}={value!r}: expected a finite number")
-    return number
-
-
-def checked_pairs(segments: ArrayLike, n_points: int) -> Ints:
-    """Pairs of point numbers, (k, 2), or a `DomainError`."""
-    raw = np.asarray(segments)
-    if raw.size == 0:
-        raise DomainError("no segments: say which points the boundary joins, e.g. Domain.polygon")
-    if raw.ndim != 2 or raw.shape[1] != 2:
-        raise DomainError(f"segments must be a (k, 2) array, not one of shape {raw.shape}")
-    if not np.issubdtype(raw.dtype, np.integer):
-        raise DomainError(f"segments must be integers, pairs of point numbers, not {raw.dtype}")
-    bad = np.flatnonzero(((raw < 0) | (raw >= n_points)).any(axis=1))
-    if len(bad):
-        i = bad[0]
-        raise DomainError(
-            f"segment {i} joins points {raw[i, 0]} and {raw[i, 1]}, but the points are numbered "
-            f"0 to {n_points - 1}"
-        )
-    return read_only(np.array(raw, dtype=np.int32, order="C"))
-
-
 def checked_segments(segments: ArrayLike, points: Floats) -> Ints:
     """Pairs of different points, (k, 2), or a `DomainError`."""
     out = checked_pairs(segments, len(points))
@@ -160,12 +75,6 @@ def checked_segments(segments: ArrayLike, points: Floats) -> Ints:
             f"segment {i} has no length: its ends are both ({x:g}, {y:g}); remove it, {OR_REPAIR}"
         )
     return out
-
-
-def check_is_mapping(labels: object, what: str) -> None:
-    """Refuse what gives nothing for each name."""
-    if not isinstance(labels, Mapping):
-        raise DomainError(f"{what} must be a mapping of names, not {type(labels).__name__}")
 
 
 def checked_regions(
@@ -279,13 +188,6 @@ def rows_of_each(numbers: NDArray[np.integer]) -> dict[int, NDArray[np.intp]]:
     first = np.flatnonzero(ordered[1:] != ordered[:-1]) + 1
     groups = np.split(order, first) if len(order) else []
     return {int(numbers[rows[0]]): rows for rows in groups}
-
-
-def is_level(heights: Floats, xy: Floats) -> bool:
-    """Whether points lie in one plane z = constant, to `FLAT` of their extent."""
-    half_width = heights.max() / 2 - heights.min() / 2  # halves, as differences may overflow
-    half_extent = (xy.max(axis=0) / 2 - xy.min(axis=0) / 2).max()
-    return bool(half_width <= FLAT * half_extent)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh._core import orient2d
+from adaptmesh.checks import LARGEST, checked_points, read_only
 from adaptmesh.curves import Curve
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats, Ints
 from adaptmesh.value import Value
 
-from . import inputs as domain_input
-from .inputs import Inside, read_only
+from .inputs import Inside
 from .paths import Run, are_near, join, length_of, name_of_curve, points_on
 from .polyline import Surroundings, chords_along
 
@@ -241,9 +241,9 @@ def _check_curves(curves: Sequence[Curve]) -> list[Floats]:
                 f"curve {i} is a {type(curve).__name__}: make it one of adaptmesh.curves"
             )
     each = [_some_points(curve) for curve in curves]
-    if not (np.abs(np.concatenate(each)) <= domain_input.LARGEST).all():
+    if not (np.abs(np.concatenate(each)) <= LARGEST).all():
         for i, places in enumerate(each):
-            domain_input.checked_points(places, f"curve {i}: point", least=0)
+            checked_points(places, f"curve {i}: point", least=0)
     return each
 
 

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from .data import DomainData
 from .inputs import OR_REPAIR
 
-if TYPE_CHECKING:
-    from adaptmesh.boundary.discretise import Outline
 
-    from .domain import Domain
-
-
-def fault_text(domain: Domain, kind: str, i: int, j: int, x: float, y: float) -> str:
+def fault_text(domain: DomainData, kind: str, i: int, j: int, x: float, y: float) -> str:
     """What is wrong, where, and what to do, from a fault that the core found."""
     place = f"({x:.17g}, {y:.17g})"
     if kind in ("crossing_segments", "overlapping_segments"):
@@ -60,36 +54,20 @@ def fault_text(domain: Domain, kind: str, i: int, j: int, x: float, y: float) ->
     return messages[kind]
 
 
-def too_near_text(
-    domain: Domain, outline: Outline, kind: str, i: int, j: int, x: float, y: float
-) -> str:
-    """What of a valid domain cannot be told apart where its curves are cut, and what to do."""
-    if kind == "duplicate_points":
-        sides = [int((outline.segments == point).any(axis=1).argmax()) for point in (i, j)]
-    else:
-        sides = [i, j]
-    a, b = (segment_text(domain, int(outline.segment_owners[k])) for k in sides)
-    return (
-        f"{a} and {b} come so near each other at ({x:.17g}, {y:.17g}) that vertices on them "
-        "cannot be told apart (coordinates are rounded): move them apart, make them one, or move "
-        "the origin near them"
-    )
-
-
-def segment_text(domain: Domain, i: int) -> str:
+def segment_text(domain: DomainData, i: int) -> str:
     (x0, y0), (x1, y1) = domain.points[domain.segments[i]].tolist()
     what = domain.curved.describe(i) if domain.curved.curves else f"segment {i}"
     return f"{what} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
 
 
-def line_text(domain: Domain, i: int) -> str:
+def line_text(domain: DomainData, i: int) -> str:
     """A segment with its name."""
     tag = int(domain.segment_tags[i])
     names = [name for name, number in domain.names.items() if number == tag]
     return segment_text(domain, i) + (f", named {names[0]!r}," if tag and names else "")
 
 
-def seed_text(domain: Domain, i: int) -> str:
+def seed_text(domain: DomainData, i: int) -> str:
     number = int(domain.seed_regions[i]) if 0 <= i < len(domain.seed_regions) else 0
     names = [name for name, region in domain.region_names.items() if region == number]
     return f"region {names[0]!r}" if names else f"region seed {i}"

@@ -17,10 +17,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from adaptmesh.checks import check_is_mapping, checked_points
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Bools, Floats, Ints
 
-from .inputs import ByLabel, Label, check_is_mapping, checked_points
+from .inputs import ByLabel, Label
 
 if TYPE_CHECKING:
     import shapely

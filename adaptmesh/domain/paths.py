@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from adaptmesh.curves import Curve
 from adaptmesh.errors import DomainError
+from adaptmesh.topology import components
 from adaptmesh.types import Floats, Index, Ints
 from adaptmesh.value import Value
 
@@ -269,14 +270,10 @@ def name_of_curve(curves: Sequence[Curve], i: int) -> str:
 
 def places_of(ends: Floats, tolerance: float) -> NDArray[np.intp]:
     """The number of the place of each end; ends within the tolerance share one."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
     from scipy.spatial import KDTree
 
     pairs = KDTree(ends).query_pairs(tolerance, output_type="ndarray")
-    n = len(ends)
-    graph = coo_array((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(n, n))
-    return connected_components(graph, directed=False)[1]
+    return components(len(ends), pairs)
 
 
 def are_near(points: Floats, places: Floats, tolerance: float) -> NDArray[np.bool_]:

@@ -10,7 +10,6 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
@@ -18,18 +17,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from adaptmesh.checks import checked_number
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats, Index, Ints
 from adaptmesh.value import Value
 
-from .inputs import checked_number
 from .paths import Run
 from .polyline import Chords, Surroundings, chords_along
 
 if TYPE_CHECKING:
-    from adaptmesh.mesh.mesh import Mesh
-
-    from .domain import Domain
+    from .data import DomainData
 
 
 TOLERANCE = 1e-9
@@ -112,14 +109,7 @@ class PeriodicSides(Value):
     motion: Motion
 
 
-def with_pair(domain: Domain, pair: PeriodicPair) -> Domain:
-    """The same domain with one more pair of periodic boundaries."""
-    out = copy.copy(domain)
-    out.periodic = (*domain.periodic, pair)
-    return out
-
-
-def used_tolerance(domain: Domain, tolerance: float | None) -> float:
+def used_tolerance(domain: DomainData, tolerance: float | None) -> float:
     """How far images may be off, if it is given or not."""
     if tolerance is None:
         return TOLERANCE * float(np.ptp(domain.points, axis=0).max())
@@ -129,7 +119,7 @@ def used_tolerance(domain: Domain, tolerance: float | None) -> float:
     return number
 
 
-def pair_motion(domain: Domain, first: str, second: str, motion: Motion | None) -> Motion:
+def pair_motion(domain: DomainData, first: str, second: str, motion: Motion | None) -> Motion:
     """The motion that is given; if none is, the translation from one boundary to the other.
 
     It is that of the boxes around them, whatever points divide their straight pieces.
@@ -148,7 +138,7 @@ def pair_motion(domain: Domain, first: str, second: str, motion: Motion | None) 
 
 
 def periodic_pair(
-    domain: Domain, first: str, second: str, motion: Motion, tolerance: float
+    domain: DomainData, first: str, second: str, motion: Motion, tolerance: float
 ) -> PeriodicPair:
     """Find what belongs together; a `DomainError` names the first place that has no image."""
     sides = [_side(domain, name) for name in (first, second)]
@@ -173,7 +163,7 @@ def periodic_pair(
     )
 
 
-def side_pieces(domain: Domain, name: str) -> Index:
+def side_pieces(domain: DomainData, name: str) -> Index:
     """The straight pieces that bear a name."""
     return _side(domain, name).pieces
 
@@ -184,13 +174,13 @@ class _Side(NamedTuple):
     pieces: Index
     runs: Index
 
-    def places(self, domain: Domain) -> Floats:
+    def places(self, domain: DomainData) -> Floats:
         ends = domain.points[domain.pieces[self.pieces]].reshape(-1, 2)
         curved = [_outline_of(domain.curved.runs[r]) for r in self.runs]
         return np.concatenate([ends, *curved])
 
 
-def _side(domain: Domain, name: str) -> _Side:
+def _side(domain: DomainData, name: str) -> _Side:
     mine = domain.segment_tags == domain.tag_named(name)
     run_of = domain.curved.segment_runs
     straight = mine & (run_of < 0)
@@ -249,7 +239,7 @@ def _refuse_without_image(
         )
 
 
-def frozen_pieces(domain: Domain) -> NDArray[np.bool_]:
+def frozen_pieces(domain: DomainData) -> NDArray[np.bool_]:
     """Which straight pieces (p,) are not cut: frozen ones, and those tied to one that is."""
     out: NDArray[np.bool_] = domain.segment_is_frozen[domain.piece_segments]
     for pair in domain.periodic:
@@ -257,7 +247,7 @@ def frozen_pieces(domain: Domain) -> NDArray[np.bool_]:
     return out
 
 
-def with_partners(domain: Domain, names: Iterable[str]) -> list[str]:
+def with_partners(domain: DomainData, names: Iterable[str]) -> list[str]:
     """Names of boundaries, each once, and of those that are periodic with them."""
     out = dict.fromkeys(names)
     for pair in domain.periodic:
@@ -342,13 +332,3 @@ def images_on(run: Run, points: Floats) -> Floats:
         off, d = points - run.point(u), run.derivative(u)
         u = np.clip(u + (off * d).sum(axis=1) / (d * d).sum(axis=1), 0, run.length)
     return u
-
-
-def periodic_vertices(mesh: Mesh, pair: PeriodicPair | PeriodicSides) -> Ints:
-    """Vertices (k, 2) of a mesh on the first boundary, and their images on the second."""
-    from scipy.spatial import KDTree
-
-    first, second = (np.unique(mesh.edges_named(name)) for name in (pair.first, pair.second))
-    images = pair.motion(mesh.points[first])
-    _, at = KDTree(mesh.points[second]).query(images)
-    return np.stack([first, second[at]], axis=1).astype(np.int32)

@@ -13,23 +13,22 @@ A side that a repair or a neighbour has divided has corners where its partner is
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from adaptmesh.types import Floats, Int64s
 
+from .data import D, DomainData, with_fields
+from .from_segments import domain_of_segments
+from .frozen import domain_with_frozen
+from .given import given_of
 from .inputs import labelled
-from .outline import Outline
-from .periodic import Motion, pair_motion, periodic_pair, side_pieces, used_tolerance, with_pair
-
-if TYPE_CHECKING:
-    from .domain import Domain
+from .periodic import Motion, PeriodicPair, pair_motion, periodic_pair, side_pieces, used_tolerance
 
 
 def domain_with_pair(
-    domain: Domain, first: str, second: str, motion: Motion | None, tolerance: float | None
-) -> Domain:
+    domain: DomainData, first: str, second: str, motion: Motion | None, tolerance: float | None
+) -> DomainData:
     """The domain with two boundaries that correspond, each with the corners of the other."""
     tolerance = used_tolerance(domain, tolerance)
     motion = pair_motion(domain, first, second, motion)
@@ -38,8 +37,13 @@ def domain_with_pair(
     return with_pair(domain, periodic_pair(domain, first, second, motion, tolerance))
 
 
+def with_pair(domain: D, pair: PeriodicPair) -> D:
+    """The same domain with one more pair of periodic boundaries."""
+    return with_fields(domain, periodic=(*domain.periodic, pair))
+
+
 def _missing(
-    domain: Domain, source: str, target: str, motion: Motion, tolerance: float
+    domain: DomainData, source: str, target: str, motion: Motion, tolerance: float
 ) -> tuple[Floats, Int64s]:
     """Images of corners of the source within straight pieces of the target, and the segments."""
     import shapely
@@ -60,7 +64,7 @@ def _missing(
     return images[image], domain.piece_segments[theirs[piece[first]]].astype(np.int64)
 
 
-def _divided(domain: Domain, places: Floats, segment: Int64s) -> Domain:
+def _divided(domain: DomainData, places: Floats, segment: Int64s) -> DomainData:
     """A domain of straight segments with further points on some of these, which divide them.
 
     The first part of a segment keeps its number; the others are numbered on after the last one.
@@ -80,16 +84,16 @@ def _divided(domain: Domain, places: Floats, segment: Int64s) -> Domain:
         segments[s] = links[0]
         parts.append(links[1:])
         owner += [s] * (len(links) - 1)
-    outline = replace(
-        Outline.of_domain(domain),
+    given = replace(
+        given_of(domain),
         points=points,
         segments=np.concatenate([segments, *parts]),
         names=labelled(np.append(tags, tags[owner])),
     )
-    out = outline.domain()
+    out = domain_of_segments(given)
     frozen = np.flatnonzero(np.append(domain.segment_is_frozen, domain.segment_is_frozen[owner]))
-    out = out.with_frozen(segments=frozen) if len(frozen) else out
-    out.corners_found = domain.corners_found
+    out = domain_with_frozen(out, (), frozen) if len(frozen) else out
+    out = with_fields(out, corners_found=domain.corners_found)
     for pair in domain.periodic:
         again = periodic_pair(out, pair.first, pair.second, pair.motion, pair.tolerance)
         out = with_pair(out, again)

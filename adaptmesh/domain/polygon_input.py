@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from adaptmesh.errors import DomainError, FormatError, FormatWarning
-from adaptmesh.io.domains.geojson import shapes_of_geojson
 
-from .outline import Shape
+from .geojson_shapes import shapes_of_geojson
+from .shape import Shape
 
 COLLECTIONS = ("Feature", "FeatureCollection")
 
@@ -45,7 +45,7 @@ def is_collection(given: Any) -> bool:
     return isinstance(given, Mapping) and given.get("type") in COLLECTIONS
 
 
-def without_empty(shapes: list[Shape], source: str = "") -> list[Shape]:
+def without_empty(shapes: list[Shape], source: str = "", *, stacklevel: int = 3) -> list[Shape]:
     """The shapes that are not empty: features may have no geometry, or an empty one.
 
     Those passed over are named in a warning, after where they come from. If all are empty, all are
@@ -57,7 +57,7 @@ def without_empty(shapes: list[Shape], source: str = "") -> list[Shape]:
     left_out = [shape.label for shape in shapes if shape.is_empty]
     more = f" and {len(left_out) - 3} more" if len(left_out) > 3 else ""
     what = f"{source}{', '.join(left_out[:3])}{more}: without geometry, passed over"
-    warnings.warn(what, FormatWarning, stacklevel=3)
+    warnings.warn(what, FormatWarning, stacklevel=stacklevel)
     return kept
 
 

@@ -16,24 +16,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh.arrangement import Faces, Repair, Repairs, find_faces, node, used_tolerance
-from adaptmesh.arrangement.numbering import unique_edges, used_points
 from adaptmesh.arrangement.winding import Passes, net_passes
 from adaptmesh.errors import DomainError
+from adaptmesh.topology import unique_edges, used_points
 from adaptmesh.types import Floats, Int64s
 
-from .domain import Domain
 from .face_owners import owners_of_faces
-from .outline import Shape
+from .given import Given
 from .rings import REPEATED, Rings, rings_of
+from .shape import Shape
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon, Polygon
 
 
-def domain_of_polygons(
+def given_of_polygons(
     polygons: Sequence[Polygon | MultiPolygon], names: Sequence[str | None]
-) -> Domain:
-    """One domain of several polygons of shapely, each a region; see `domain_of_shapes`.
+) -> Given:
+    """One domain of several polygons of shapely, each a region; see `given_of_shapes`.
 
     Polygons of the same name are one region.
     """
@@ -41,11 +41,11 @@ def domain_of_polygons(
         Shape.of_shapely(polygon, i, name)
         for i, (polygon, name) in enumerate(zip(polygons, names, strict=True))
     ]
-    return domain_of_shapes(shapes)
+    return given_of_shapes(shapes)
 
 
-def domain_of_shapes(shapes: Sequence[Shape]) -> Domain:
-    """One domain of several polygons, each a region; nothing is repaired.
+def given_of_shapes(shapes: Sequence[Shape]) -> Given:
+    """What makes one domain of several polygons, each a region; nothing is repaired.
 
     Polygons may touch and share borders. What is enclosed by polygons and in none of them is a
     hole. The border between the regions A and B is named ``"A|B"``, in the order of the polygons;
@@ -57,7 +57,7 @@ def domain_of_shapes(shapes: Sequence[Shape]) -> Domain:
         If there is anything to repair: polygons that cross themselves or overlap, borders that
         nearly but not quite coincide, ...; it names the first place.
     """
-    domain, repairs = repaired_domain_of_shapes(shapes, None)
+    given, repairs = repaired_shapes(shapes, None)
     faults = [record for record in repairs if record.kind != REPEATED]
     if faults:
         more = f" (and {len(faults) - 1} more such places)" if len(faults) > 1 else ""
@@ -65,13 +65,11 @@ def domain_of_shapes(shapes: Sequence[Shape]) -> Domain:
             f"{faults[0]}{more}: this is what adaptmesh.repair would do; let it (on the command "
             "line --repair), or mend it"
         )
-    return domain
+    return given
 
 
-def repaired_domain_of_shapes(
-    shapes: Sequence[Shape], tolerance: float | None
-) -> tuple[Domain, Repairs]:
-    """One domain of several polygons, and what had to be done for it; see `adaptmesh.repair`."""
+def repaired_shapes(shapes: Sequence[Shape], tolerance: float | None) -> tuple[Given, Repairs]:
+    """What makes one domain of several polygons, and what had to be done for it; see `repair`."""
     if not shapes:
         raise DomainError("there are no polygons to make a domain of")
     log: list[Repair] = []
@@ -92,8 +90,8 @@ def repaired_domain_of_shapes(
     _record_what_is_dropped(points, edges, kept, rings, passes, log)
     if not kept.any():
         raise DomainError(f"there is nothing to mesh: {log[-1]}")
-    domain = _domain(points, edges, kept, faces, owner, shapes)
-    return domain, Repairs(tuple(log), tolerance, noded.drift(rings.points, rings.segments))
+    given = _given(points, edges, kept, faces, owner, shapes)
+    return given, Repairs(tuple(log), tolerance, noded.drift(rings.points, rings.segments))
 
 
 def _record_what_is_dropped(
@@ -127,15 +125,15 @@ def _record_what_is_dropped(
         log.append(Repair("spike", (x, y), what))
 
 
-def _domain(
+def _given(
     points: Floats,
     edges: Int64s,
     kept: NDArray[np.bool_],
     faces: Faces,
     owner: Int64s,
     shapes: Sequence[Shape],
-) -> Domain:
-    """The domain of the faces that have an owner, with a region for each name."""
+) -> Given:
+    """What makes the domain of the faces that have an owner, with a region for each name."""
     united = faces.united(~kept)
     _, first = np.unique(united, return_index=True)
     first = first[united[first] != united[0]]  # the outside needs no point
@@ -148,7 +146,7 @@ def _domain(
     regions = {name: places[mine] for name, mine in faces_of.items() if mine}
     borders = edges[kept]
     used, segments = used_points(borders)
-    return Domain(
+    return Given(
         points[used],
         segments,
         holes=places[owners < 0],

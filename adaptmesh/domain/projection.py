@@ -13,7 +13,7 @@ from adaptmesh.types import Floats, Index
 from .paths import derivatives_on, points_on
 
 if TYPE_CHECKING:
-    from .domain import Domain
+    from .data import DomainData
 
 
 REACH = 0.15
@@ -46,7 +46,7 @@ TOLERANCE = 1e-12
 """How far off a line of a domain its vertices may be, as a share of the diameter of the domain."""
 
 
-def tolerance_of(domain: Domain) -> float:
+def tolerance_of(domain: DomainData) -> float:
     """How far off a line of the domain its vertices may be.
 
     Points along slanted segments are rounded to the nearest coordinates: that is `TOLERANCE` times
@@ -60,7 +60,9 @@ def tolerance_of(domain: Domain) -> float:
     return rounding if found is None else max(rounding, found.tolerance)
 
 
-def places_on_runs(domain: Domain, points: Floats, tolerance: float) -> tuple[Index, Floats, Index]:
+def places_on_runs(
+    domain: DomainData, points: Floats, tolerance: float
+) -> tuple[Index, Floats, Index]:
     """All places of runs that are as near as the tolerance to one of these points (n, 2).
 
     Returns
@@ -95,7 +97,7 @@ class Parts(NamedTuple):
     run: Index
     u: Floats
 
-    def bent_little(self, domain: Domain) -> Parts:
+    def bent_little(self, domain: DomainData) -> Parts:
         """The same parts, halved until none turns by more than `BENT`."""
         runs, (run, u) = domain.curved.runs, self
         done = []
@@ -118,12 +120,12 @@ class Parts(NamedTuple):
 
 
 def _places(
-    domain: Domain,
+    domain: DomainData,
     parts: Parts,
     points: Floats,
     tolerance: float,
     reach: float,
-    nearest: Callable[[Domain, Index, Floats, Floats], Floats],
+    nearest: Callable[[DomainData, Index, Floats, Floats], Floats],
 ) -> tuple[Index, Floats, Index]:
     """Places of points on parts of runs: the run, the parameter and the point of each, (k,)."""
     import shapely
@@ -144,7 +146,7 @@ def _places(
     return run[on], u[on], point[on]
 
 
-def _nearest(domain: Domain, run: Index, u: Floats, points: Floats) -> Floats:
+def _nearest(domain: DomainData, run: Index, u: Floats, points: Floats) -> Floats:
     """The parameters of runs (k,), about in these ranges (k, 2), nearest to points (k, 2)."""
     runs = domain.curved.runs
     a, b = (points_on(runs, run, u[:, i]) for i in (0, 1))
@@ -162,7 +164,7 @@ def _nearest(domain: Domain, run: Index, u: Floats, points: Floats) -> Floats:
     return out
 
 
-def _nearest_bracketed(domain: Domain, run: Index, u: Floats, points: Floats) -> Floats:
+def _nearest_bracketed(domain: DomainData, run: Index, u: Floats, points: Floats) -> Floats:
     """The same for ranges in which runs turn by little.
 
     There (p(u) - x) . p'(u) grows with u for a point x on the run, so that Newton's steps and

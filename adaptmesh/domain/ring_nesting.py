@@ -12,8 +12,8 @@ from adaptmesh.types import Floats, Int64s
 
 from .face_owners import owners_of_faces
 from .inputs import OR_REPAIR
-from .outline import Shape
 from .rings import Ring, ring_area, ring_label
+from .shape import Shape
 
 
 def rings_with_labels(shape: Shape) -> tuple[list[Ring], list[Floats]]:

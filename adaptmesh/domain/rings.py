@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from adaptmesh.arrangement import NOWHERE, Repair, Words, at, first_of_equal
+from adaptmesh.checks import LARGEST
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats, Int64s
 
-from .inputs import LARGEST
-from .outline import Shape
+from .shape import Shape
 
 REPEATED = "duplicate points"
 """The kind of a repair of points repeated in a row of a ring: to leave them out changes nothing."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from adaptmesh.boundary.path_cuts import RunParts, turns_between
 from adaptmesh.types import Floats, Index, Ints
 
-from .domain import Domain
+from .data import DomainData
 from .paths import points_on
 from .periodic import Motion, frozen_pieces, images_on
 
@@ -52,7 +52,7 @@ class Lines:
         For each line that is periodic with another one.
     """
 
-    domain: Domain
+    domain: DomainData
     corners: Floats
     ends: Index
     segments: Ints
@@ -62,7 +62,7 @@ class Lines:
     ties: dict[int, Tie]
 
     @classmethod
-    def of(cls, domain: Domain) -> Lines:
+    def of(cls, domain: DomainData) -> Lines:
         """The lines of a domain."""
         curved, n_runs = domain.curved, len(domain.curved.runs)
         number = np.cumsum(curved.is_vertex) - 1
@@ -125,7 +125,7 @@ class Lines:
         return np.where(places == 0, begin, np.where(places == length, end, out))
 
 
-def _ties(domain: Domain, straight: Index) -> dict[int, Tie]:
+def _ties(domain: DomainData, straight: Index) -> dict[int, Tie]:
     """The ties of lines, from the pairs of pieces and runs of a domain."""
     out: dict[int, Tie] = {}
     number = np.full(len(domain.pieces), -1)

@@ -10,9 +10,10 @@ import numpy as np
 import metrics
 from adaptmesh._core import Fault, Mesher
 from adaptmesh.boundary.discretise import Outline, cut_outline
+from adaptmesh.boundary.messages import too_near_text
 from adaptmesh.boundary.vertex_limit import Budget, Progress
+from adaptmesh.domain.background import register_mesher
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.messages import too_near_text
 from adaptmesh.errors import DomainError, MetricError
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.types import Ints
@@ -174,3 +175,6 @@ def finished_mesh(domain: Domain, mesher: Mesher, regions: Ints) -> Mesh:
         region_names=domain.region_names,
         domain=domain,
     )
+
+
+register_mesher(generate)  # for `background_mesh`, which is below

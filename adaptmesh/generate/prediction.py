@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 import metrics
 from adaptmesh.domain.domain import Domain
+from adaptmesh.domain.measures import inside_is_left_of
 from adaptmesh.domain.paths import points_on
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats, Ints
@@ -73,7 +74,7 @@ def _inscribed(domain: Domain, field: ControlSpace) -> _Polygon:
         return _Polygon(domain.points, domain.triangles, border)
     segment = segment[on_run]
     run, u = curved.segment_runs[segment], curved.segment_parameters[segment]
-    turned = ~domain.inside_is_left_of(segment)[:, None]
+    turned = ~inside_is_left_of(domain, segment)[:, None]
     u = np.where(turned, u[:, ::-1], u)
     chord = np.where(turned, domain.segments[segment][:, ::-1], domain.segments[segment])
 

@@ -52,8 +52,7 @@ class Format:
         """What a file says; without `fields`, files with nothing but fields need not be read."""
         module = import_module(f"adaptmesh.io.meshes.{self.reader}")
         if self.has_more_files:
-            content: Content = module.load(path, fields)
-            return content
+            return module.load(path, fields)
         data = read_bytes(path)
         with located(path):
             content = module.decode(data)
@@ -63,8 +62,7 @@ class Format:
         """The bytes of each file to be written; none is written yet."""
         module = import_module(f"adaptmesh.io.meshes.{self.writer or self.reader}")
         if self.has_more_files:
-            files: Mapping[Path, bytes] = module.save(path, content, **options)
-            return files
+            return module.save(path, content, **options)
         return {path: module.encode(content, **options)}
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from adaptmesh.domain.projection import tolerance_of
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.mesh.validate.subject import edge_keys
+from adaptmesh.topology import edge_keys
 from adaptmesh.types import Ints
 
 
@@ -28,7 +28,5 @@ def required_items(mesh: Mesh) -> tuple[Ints, Ints]:
     ends = domain.segments[domain.segment_is_frozen]
     ends = vertex[ends[there[ends].all(axis=1)]]
     n = len(mesh.points)
-    edges = np.isin(
-        edge_keys(mesh.edges[:, 0], mesh.edges[:, 1], n), edge_keys(ends[:, 0], ends[:, 1], n)
-    )
+    edges = np.isin(edge_keys(mesh.edges, n), edge_keys(ends, n))
     return points.astype(np.int32), np.flatnonzero(edges).astype(np.int32)

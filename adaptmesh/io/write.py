@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from adaptmesh.domain.seeds import seeds_in
 from adaptmesh.errors import FormatError, FormatWarning
 from adaptmesh.files.located import located
 from adaptmesh.files.whole import replace_files
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.periodic_sides import periodic_rows
+from adaptmesh.mesh.seeds import seeds_in
 from metrics.control import Metric
 
 from .formats import Format, format_of

@@ -15,7 +15,6 @@ import numpy as np
 
 from adaptmesh.adapt.adapt import adapt
 from adaptmesh.checks import expect_function
-from adaptmesh.domain.domain import Domain
 from adaptmesh.errors import BudgetError, MetricError
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.transfer.transfer import METHODS
@@ -78,7 +77,7 @@ def adapt_loop(
         with k components; a metric, as a control space or an array (n, 3) or (n, 2, 2), which then
         steers the mesh; or a `Solution`, which can hold all of that and the solver's own error.
     mesh : Mesh
-        To begin with. If it has no domain, `Domain.of_mesh` finds it once.
+        To begin with. If it has no domain, `Mesh.to_domain` finds it once.
     target_vertices : float, optional
         The number of vertices wanted.
     error : float or mapping of str to float, optional
@@ -349,7 +348,7 @@ def with_domain(mesh: Mesh) -> Mesh:
     """The mesh with its domain, found once."""
     if not isinstance(mesh, Mesh):
         raise TypeError(f"a Mesh is wanted to begin with, not {type(mesh).__name__}")
-    return mesh if mesh.domain is not None else replace(mesh, domain=Domain.of_mesh(mesh))
+    return mesh if mesh.domain is not None else replace(mesh, domain=mesh.to_domain())
 
 
 def _resumed(

@@ -11,16 +11,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from adaptmesh.domain.projection import places_on_runs, tolerance_of
 from adaptmesh.domain.side import Lines
-from adaptmesh.mesh.validate.subject import edge_keys
+from adaptmesh.topology import components, edge_keys
 from adaptmesh.types import Floats, Index, Ints
 
-from .mesh import Mesh
+from .data import MeshData
 
 
 @dataclass(frozen=True)
@@ -85,7 +82,7 @@ class Inner(NamedTuple):
     which: Index
 
 
-def find_chains(mesh: Mesh, lines: Lines) -> Chains | None:
+def find_chains(mesh: MeshData, lines: Lines) -> Chains | None:
     """The rows of a mesh along lines; None if its constrained edges are not along these."""
     corner = vertices_at(mesh, lines.corners)
     if (corner < 0).any() or not len(mesh.edges) or _regions_leak(mesh):
@@ -107,7 +104,7 @@ def find_chains(mesh: Mesh, lines: Lines) -> Chains | None:
     return _in_order(mesh, corner, inner.vertices, line[inner.rows], places, lines)
 
 
-def vertices_at(mesh: Mesh, points: Floats) -> Ints:
+def vertices_at(mesh: MeshData, points: Floats) -> Ints:
     """The vertex of a mesh at each of these points (k, 2), bit for bit; -1 where there is none."""
     everything = np.concatenate([mesh.points, points]) + 0.0  # -0.0 becomes 0.0
     _, group = np.unique(everything, axis=0, return_inverse=True)
@@ -117,16 +114,16 @@ def vertices_at(mesh: Mesh, points: Floats) -> Ints:
     return vertex[group[len(mesh.points) :]]
 
 
-def _regions_leak(mesh: Mesh) -> bool:
+def _regions_leak(mesh: MeshData) -> bool:
     """Whether two regions meet without a constrained edge between them."""
     if (mesh.regions == mesh.regions[0]).all():
         return False
     t = mesh.triangles
-    keys = np.stack([edge_keys(t[:, i], t[:, i - 1], len(mesh.points)) for i in range(3)], axis=1)
+    keys = np.stack([edge_keys(t[:, [i, i - 1]], len(mesh.points)) for i in range(3)], axis=1)
     order = np.argsort(keys, axis=None, kind="stable")
     keys, regions = keys.ravel()[order], np.repeat(mesh.regions, 3)[order]
     differ = (keys[1:] == keys[:-1]) & (regions[1:] != regions[:-1])
-    return not np.isin(keys[1:][differ], _keys(mesh.edges, len(mesh.points))).all()
+    return not np.isin(keys[1:][differ], edge_keys(mesh.edges, len(mesh.points))).all()
 
 
 def _rows(edges: Ints, number: Index) -> Index:
@@ -134,12 +131,11 @@ def _rows(edges: Ints, number: Index) -> Index:
     n, e = len(number), len(edges)
     edge, side = np.nonzero(number[edges] < 0)
     shared = edges[edge, side]
-    graph = coo_array((np.ones(len(edge)), (edge, e + shared)), shape=(e + n, e + n))
-    label = connected_components(graph, directed=False)[1][:e]
+    label = components(e + n, np.stack([edge, e + shared], axis=1))[:e]
     return np.unique(label, return_inverse=True)[1].ravel()
 
 
-def _inner(mesh: Mesh, number: Index, row: Index, lines: Lines) -> Inner:
+def _inner(mesh: MeshData, number: Index, row: Index, lines: Lines) -> Inner:
     edge, side = np.nonzero(number[mesh.edges] < 0)
     vertices, first = np.unique(mesh.edges[edge, side], return_index=True)
     points = mesh.points[vertices]
@@ -155,7 +151,10 @@ def _lines_of_rows(corners: Index, inner: Inner, lines: Lines) -> Index | None:
 
     Several lines may join the same two corners, or begin and end at one; but no two straight ones.
     """
-    keys, line_keys = _keys(corners, len(lines.corners)), _keys(lines.ends, len(lines.corners))
+    keys, line_keys = (
+        edge_keys(corners, len(lines.corners)),
+        edge_keys(lines.ends, len(lines.corners)),
+    )
     order, line_order = np.argsort(keys, kind="stable"), np.argsort(line_keys, kind="stable")
     if not np.array_equal(keys[order], line_keys[line_order]):
         return None
@@ -205,7 +204,7 @@ def _places(inner: Inner, line: Index, lines: Lines) -> Floats | None:
 
 
 def _in_order(
-    mesh: Mesh, corner: Index, inner: Index, line: Index, places: Floats, lines: Lines
+    mesh: MeshData, corner: Index, inner: Index, line: Index, places: Floats, lines: Lines
 ) -> Chains | None:
     """Rows of the corners at the ends of each line, and the inner vertices by their places."""
     every = np.arange(len(lines))
@@ -215,9 +214,7 @@ def _in_order(
     order = np.lexsort([places, line])
     first = np.searchsorted(line[order], np.arange(len(lines) + 1)).astype(np.int32)
     chains = Chains(vertex[order].astype(np.int32), places[order], first)
-    ours, theirs = (np.sort(_keys(edges, len(mesh.points))) for edges in (chains.edges, mesh.edges))
+    ours, theirs = (
+        np.sort(edge_keys(edges, len(mesh.points))) for edges in (chains.edges, mesh.edges)
+    )
     return chains if np.array_equal(ours, theirs) else None
-
-
-def _keys(edges: Index, n_points: int) -> NDArray[np.int64]:
-    return edge_keys(edges[:, 0], edges[:, 1], n_points)

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh._core import orient2d
-from adaptmesh.arrangement.numbering import unique_edges
 from adaptmesh.domain.inputs import name_of_number
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.distance import near_points
+from adaptmesh.topology import unique_edges
 from adaptmesh.types import Int64s
 
-from .mesh import Mesh
+from .data import M, MeshData
 
 
 class OnceEach(NamedTuple):
@@ -77,7 +77,7 @@ def edges_once(
     return OnceEach(rows, out, edge)
 
 
-def with_edges_once(mesh: Mesh) -> Mesh:
+def with_edges_once(mesh: M) -> M:
     """The mesh with each constrained edge listed once, or a `DomainError` if it has two tags."""
     once = edges_once(mesh.edges, mesh.edge_tags, mesh.names, DomainError)
     if len(once.rows) == len(mesh.edges):
@@ -90,7 +90,7 @@ def with_edges_once(mesh: Mesh) -> Mesh:
     )
 
 
-def cleaned_mesh(mesh: Mesh, merge: float | None) -> Mesh:
+def cleaned_mesh(mesh: M, merge: float | None) -> M:
     """As `Mesh.cleaned`."""
     if merge is not None and not 0 <= merge < np.inf:
         raise ValueError(f"merge={merge!r}: expected a distance of at least 0")
@@ -133,7 +133,7 @@ def cleaned_mesh(mesh: Mesh, merge: float | None) -> Mesh:
     return with_edges_once(new)
 
 
-def _refuse_collapsed(mesh: Mesh, triangles: Int64s, merge: float | None) -> None:
+def _refuse_collapsed(mesh: MeshData, triangles: Int64s, merge: float | None) -> None:
     """Refuse to merge vertices of one triangle, or so that a triangle is turned over."""
     if merge is None:
         return

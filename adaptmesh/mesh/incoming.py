@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from adaptmesh._core import orient2d
-from adaptmesh.domain.inputs import LARGEST, is_level
+from adaptmesh.checks import LARGEST, is_level
 from adaptmesh.errors import FormatError
 from adaptmesh.types import Array
 

@@ -2,29 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 
-import numpy as np
+from adaptmesh.domain.background import TriangleMesh
+from adaptmesh.domain.domain import Domain
+from adaptmesh.domain.inputs import ByLabel
+from adaptmesh.domain.naming import Chosen
+from adaptmesh.domain.periodic import PeriodicPair, PeriodicSides
+from adaptmesh.types import Ints
 
-from adaptmesh.types import Floats, Ints
-from adaptmesh.value import FrozenMapping, Value
-from metrics.measure.exact import mesh_edges
-
-from .arrays import frozen_integers, frozen_reals, numbers, plane_points, rows, triangle_areas
-
-if TYPE_CHECKING:
-    from adaptmesh.domain.domain import Domain
-    from adaptmesh.domain.inputs import ByLabel
-    from adaptmesh.domain.naming import Chosen
-    from adaptmesh.domain.periodic import PeriodicPair, PeriodicSides
-    from adaptmesh.mesh.validate.validate import Validity
+from .cleaned import cleaned_mesh
+from .data import MeshData
+from .names import mesh_with_names
+from .periodic_vertices import periodic_vertices
+from .to_domain import domain_of_mesh
+from .validate.validate import Validity, validate
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Mesh(Value):
+class Mesh(MeshData):
     """A conforming triangle mesh; it never changes.
 
     Parameters
@@ -59,72 +57,9 @@ class Mesh(Value):
         motion between; see `Domain.with_periodic`.
     """
 
-    points: Floats
-    triangles: Ints
-    regions: Ints = field(default_factory=lambda: np.empty(0, np.int32))
-    edges: Ints = field(default_factory=lambda: np.empty((0, 2), np.int32))
-    edge_tags: Ints = field(default_factory=lambda: np.empty(0, np.int32))
-    names: Mapping[str, int] = field(default_factory=dict)
-    region_names: Mapping[str, int] = field(default_factory=dict)
-    domain: Domain | None = None
-    kept: Ints | None = None
-    required_points: Ints = field(default_factory=lambda: np.empty(0, np.int32))
-    required_edges: Ints = field(default_factory=lambda: np.empty(0, np.int32))
-    periodic: tuple[PeriodicSides, ...] = ()
-
-    def __post_init__(self) -> None:
-        def put(name: str, value: object) -> None:
-            object.__setattr__(self, name, value)
-
-        points = frozen_reals(plane_points(self.points))
-        put("points", points)
-        put("triangles", frozen_integers(rows(self.triangles, "triangles", 3), "triangle"))
-        put("edges", frozen_integers(rows(self.edges, "edges", 2), "edge"))
-        regions = numbers(self.regions, "regions", len(self.triangles), "triangles")
-        put("regions", frozen_integers(regions, "region"))
-        tags = numbers(self.edge_tags, "edge_tags", len(self.edges), "edges")
-        put("edge_tags", frozen_integers(tags, "edge tag"))
-        if self.kept is not None:
-            kept = numbers(self.kept, "kept", len(points), "points")
-            put("kept", frozen_integers(kept, "number kept"))
-        for name in ("required_points", "required_edges"):
-            given = getattr(self, name)
-            put(name, frozen_integers(np.ravel(() if given is None else given), name))
-        put("names", FrozenMapping({} if self.names is None else dict(self.names)))
-        names = {} if self.region_names is None else dict(self.region_names)
-        put("region_names", FrozenMapping(names))
-
-    def __repr__(self) -> str:
-        names = ", ".join([*self.names, *self.region_names])
-        return (
-            f"<Mesh: {len(self.points)} points, {len(self.triangles)} triangles, "
-            f"{len(self.edges)} constrained edges{'; ' + names if names else ''}>"
-        )
-
-    @cached_property
-    def unique_edges(self) -> Ints:
-        """All edges of the triangles once, (e, 2), smaller vertex number first, sorted."""
-        return mesh_edges(self.triangles)[0]
-
-    @cached_property
-    def areas(self) -> Floats:
-        """Area of each triangle, (m,), negative if clockwise; accurate however thin it is."""
-        return triangle_areas(self.points[self.triangles])
-
-    def background_mesh(self, metric: Any) -> Mesh:
+    def background_mesh(self, metric: Any) -> TriangleMesh:
         """Another mesh of the same domain, for this metric; see `Domain.background_mesh`."""
-        from adaptmesh.domain.domain import Domain
-
-        return (self.domain or Domain.of_mesh(self)).background_mesh(metric)
-
-    def edges_named(self, name: str) -> Ints:
-        """The constrained edges that bear a name, (j, 2)."""
-        return self.edges[self.edge_tags == _look_up(self.names, name, "edge")]
-
-    def triangles_in(self, region: str) -> Ints:
-        """Numbers of the triangles of a named region, (j,)."""
-        number = _look_up(self.region_names, region, "region")
-        return np.flatnonzero(self.regions == number).astype(np.int32)
+        return (self.domain or self.to_domain()).background_mesh(metric)
 
     def periodic_vertices(self) -> dict[tuple[str, str], Ints]:
         """For each pair of periodic boundaries, vertices that correspond, (k, 2).
@@ -132,8 +67,6 @@ class Mesh(Value):
         In each row a vertex on the first boundary and its image on the second; see
         `Domain.with_periodic`.
         """
-        from adaptmesh.domain.periodic import periodic_vertices
-
         pairs: Sequence[PeriodicPair | PeriodicSides] = (
             self.periodic if self.domain is None else self.domain.periodic
         )
@@ -163,8 +96,6 @@ class Mesh(Value):
         >>> mesh.edges_named("floor").tolist()
         [[0, 1]]
         """
-        from .names import mesh_with_names
-
         return mesh_with_names(self, names)
 
     def cleaned(self, merge: float | None = None) -> Mesh:
@@ -199,19 +130,42 @@ class Mesh(Value):
         >>> seam.cleaned(merge=0.0).triangles.tolist()
         [[0, 1, 2], [1, 3, 2]]
         """
-        from .cleaned import cleaned_mesh
-
         return cleaned_mesh(self, merge)
 
     def validate(self, *, tolerance: float | None = None) -> Validity:
         """Check every invariant of a mesh by name; see `adaptmesh.validate`."""
-        from .validate.validate import validate
-
         return validate(self, tolerance=tolerance)
 
+    def to_domain(
+        self, corner_angle: float | None = None, *, straight_tolerance: float | None = None
+    ) -> Domain:
+        """The domain that the mesh covers, from its constrained edges, regions and names.
 
-def _look_up(names: Mapping[str, int], name: str, kind: str) -> int:
-    if name not in names:
-        known = ", ".join(map(repr, names)) or "none"
-        raise KeyError(f"no {kind} is named {name!r}; the names are: {known}")
-    return names[name]
+        Vertices on a straight line of the border are no corners of the domain: they can be left out
+        of the next mesh. `corners_found` of the domain says how many corners there are, of how many
+        vertices, to what tolerance the rest is straight, and why to that.
+
+        Parameters
+        ----------
+        corner_angle : float, optional
+            In degrees. If given, the border is taken to be smooth where it turns by at most this
+            from edge to edge: it becomes splines through its vertices, from corner to corner, and
+            stays straight where several edges lie on one line. If not, it is the polygon that the
+            mesh has.
+        straight_tolerance : float, optional
+            How far vertices may be off a straight line, in units of the coordinates. If not given,
+            by their digits: 1e-12 of the extent, and twice the rounding error of points, which is
+            8 units in the last place of the largest coordinate; half a unit of the last decimal
+            digit, or of float32, where all coordinates have no more digits than that (at least 8
+            different values, whose last digit is mostly not zero, and a unit smaller than 1/20 of
+            the shortest edge of the border or 1e-5 of the extent); or, where coordinates were
+            turned or scaled since, 8 times what neighbours on the border are off, mostly to
+            opposite sides (at least 24 pairs of them, off by less than 4e-6 of the extent).
+            Deviations that are larger than the tolerance are corners, however small the angle.
+
+        Raises
+        ------
+        DomainError
+            It is no mesh of a domain, or the tolerance is negative, or so large that sides meet.
+        """
+        return domain_of_mesh(self, corner_angle, straight_tolerance)

@@ -8,20 +8,19 @@ import numpy as np
 
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import ByLabel
-from adaptmesh.domain.names import domain_with_names, renamed_tags, tags_of_sides
+from adaptmesh.domain.named_sides import renamed_tags, tags_of_sides
 from adaptmesh.domain.naming import Chosen, Sides, split_names, straight_sides
-from adaptmesh.domain.seeds import triangles_beside
 from adaptmesh.domain.side import Lines
 from adaptmesh.errors import DomainError
-from adaptmesh.mesh.validate.subject import edge_keys
+from adaptmesh.topology import edge_keys, triangles_beside
 from adaptmesh.types import Ints
 
 from .boundary_polylines import find_chains
-from .mesh import Mesh
+from .data import M, MeshData
 from .to_domain import with_interfaces
 
 
-def mesh_with_names(mesh: Mesh, names: ByLabel[Chosen]) -> Mesh:
+def mesh_with_names(mesh: M, names: ByLabel[Chosen]) -> M:
     """As `Mesh.with_names`."""
     if mesh.domain is not None:
         return _as_its_domain(mesh, names)
@@ -31,7 +30,7 @@ def mesh_with_names(mesh: Mesh, names: ByLabel[Chosen]) -> Mesh:
     return replace(mesh, edges=edges, edge_tags=tags, names=numbers)
 
 
-def _sides_of_edges(mesh: Mesh, edges: Ints) -> Sides:
+def _sides_of_edges(mesh: MeshData, edges: Ints) -> Sides:
     left, right = triangles_beside(mesh.triangles, edges, len(mesh.points))
     ends = mesh.points[edges]
     d = ends[:, 1] - ends[:, 0]
@@ -46,7 +45,7 @@ def _sides_of_edges(mesh: Mesh, edges: Ints) -> Sides:
     return straight_sides(ends, sign[:, None] * to_right, describe)
 
 
-def _as_its_domain(mesh: Mesh, names: ByLabel[Chosen]) -> Mesh:
+def _as_its_domain(mesh: M, names: ByLabel[Chosen]) -> M:
     """The domain gets the names, and the edges along its lines those of the lines."""
     domain = mesh.domain
     assert domain is not None
@@ -57,7 +56,7 @@ def _as_its_domain(mesh: Mesh, names: ByLabel[Chosen]) -> Mesh:
             f"name {numbered[0]!r} is given to numbers, but the mesh has a domain: name its sides, "
             "mesh.domain.with_names, and mesh it"
         )
-    named = domain_with_names(domain, names)
+    named = domain.with_names(names)
     lines = Lines.of(domain)
     chains = find_chains(mesh, lines)
     if chains is None:
@@ -67,9 +66,9 @@ def _as_its_domain(mesh: Mesh, names: ByLabel[Chosen]) -> Mesh:
         )
     tag_of = _tags_of_lines(domain, named, lines)
     n = len(mesh.points)
-    keys = edge_keys(chains.edges[:, 0], chains.edges[:, 1], n)
+    keys = edge_keys(chains.edges, n)
     order = np.argsort(keys)
-    asked = edge_keys(mesh.edges[:, 0], mesh.edges[:, 1], n)
+    asked = edge_keys(mesh.edges, n)
     found = order[np.searchsorted(keys, asked, sorter=order)]
     tags = tag_of[chains.edge_lines[found]]
     return replace(mesh, edge_tags=tags, names=named.names, domain=named)

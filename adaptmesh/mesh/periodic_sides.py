@@ -15,14 +15,14 @@ import numpy as np
 from adaptmesh.domain.periodic import Motion, PeriodicSides
 from adaptmesh.errors import FormatError
 
-from .mesh import Mesh
+from .data import MeshData
 
 Rows = list[tuple[str, str, list[float]]]
 
 _RIGID = 1e-9  # by which the turn of a motion may differ from a rotation
 
 
-def periodic_rows(mesh: Mesh) -> Rows:
+def periodic_rows(mesh: MeshData) -> Rows:
     """The periodic boundaries of a mesh, of its domain or from a file, as a list."""
     pairs = mesh.periodic if mesh.domain is None else mesh.domain.periodic
     return [

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from adaptmesh.domain.data import CornersFound
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats, Ints
 
@@ -15,32 +16,6 @@ from .coordinate_digits import digits_of
 
 EXACT = 1e-12
 """Vertices nearer than this share of the extent of a mesh to a straight line lie on it, anyway."""
-
-
-@dataclass(frozen=True)
-class CornersFound:
-    """How the corners of a domain were found among the vertices on the border of a mesh.
-
-    Attributes
-    ----------
-    corners, vertices : int
-        So many of so many vertices on the border and on inner lines are corners of the domain.
-    tolerance : float
-        All others are no farther than this from the straight lines between corners.
-    why : str
-        What the tolerance comes from.
-    """
-
-    corners: int
-    vertices: int
-    tolerance: float
-    why: str
-
-    def __str__(self) -> str:
-        return (
-            f"{self.corners} corners of {self.vertices} vertices, "
-            f"straight to {self.tolerance:.2g} ({self.why})"
-        )
 
 
 @dataclass(frozen=True)

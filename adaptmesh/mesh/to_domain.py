@@ -8,24 +8,27 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from adaptmesh.checks import check_range
 from adaptmesh.curves import Curve
+from adaptmesh.domain.data import DomainData, with_fields
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.inputs import check_range, labelled
+from adaptmesh.domain.inputs import labelled
 from adaptmesh.domain.periodic_corners import domain_with_pair
-from adaptmesh.domain.seeds import hole_points, region_points, regions_beside
 from adaptmesh.errors import DomainError
-from adaptmesh.mesh.validate.subject import Finding, Subject, edge_keys
+from adaptmesh.mesh.seeds import hole_points, region_points
+from adaptmesh.mesh.validate.subject import Finding, Subject
+from adaptmesh.topology import edge_keys, regions_beside
 from adaptmesh.types import Ints
 
 from .cleaned import with_edges_once
+from .data import MeshData
 from .fit_curves import smooth_curves
-from .mesh import Mesh
 from .straight_sides import Straightness, needed_corners
 from .validate import local
 
 
 def domain_of_mesh(
-    mesh: Mesh, corner_angle: float | None = None, straight_tolerance: float | None = None
+    mesh: MeshData, corner_angle: float | None = None, straight_tolerance: float | None = None
 ) -> Domain:
     """Corners, segments, holes, regions and names of a mesh.
 
@@ -37,7 +40,6 @@ def domain_of_mesh(
     The tolerance found from the digits of the coordinates is not used where it makes what is no
     domain, such as sides that are nearer to each other than that.
     """
-    check_is_mesh(mesh)
     mesh = with_edges_once(mesh)
     if not len(mesh.triangles):
         raise DomainError("the mesh has no triangles, so it covers no domain")
@@ -57,7 +59,7 @@ def domain_of_mesh(
 
 
 def _domain(
-    mesh: Mesh, edges: Ints, tags: Ints, corner_angle: float | None, straight: Straightness
+    mesh: MeshData, edges: Ints, tags: Ints, corner_angle: float | None, straight: Straightness
 ) -> Domain:
     """The domain inside these edges, whose border is straight to a tolerance."""
     segments, segment_edges = [], []  # the latter: one of the edges on each
@@ -101,13 +103,15 @@ def _domain(
             corner_angle=0.0,  # every end of these curves is a corner
         )
         frozen = is_required[curve_edges][domain.curved.segment_curves]
-    domain.corners_found = straight.found(len(used), len(np.unique(edges)))
+    found = straight.found(len(used), len(np.unique(edges)))
+    data: DomainData = with_fields(domain, corners_found=found)
     for sides in mesh.periodic:
-        domain = domain_with_pair(domain, sides.first, sides.second, sides.motion, None)
+        data = domain_with_pair(data, sides.first, sides.second, sides.motion, None)
+    domain = Domain.of_data(data)
     return domain.with_frozen(segments=np.flatnonzero(frozen)) if frozen.any() else domain
 
 
-def _refuse_what_is_no_mesh(mesh: Mesh) -> None:
+def _refuse_what_is_no_mesh(mesh: MeshData) -> None:
     """Refuse triangles and edges that are not what the rest takes them for."""
     subject = Subject(mesh)
     _refuse_if_found(subject, local.finite_points, local.indices_in_range)
@@ -148,20 +152,14 @@ def _refuse_if_found(subject: Subject, *looks: Callable[[Subject], Finding]) -> 
             )
 
 
-def check_is_mesh(mesh: object) -> None:
-    """Refuse what is no mesh."""
-    if not isinstance(mesh, Mesh):
-        raise DomainError(f"a Mesh is wanted, not {type(mesh).__name__}: generate makes one")
-
-
-def with_interfaces(mesh: Mesh) -> tuple[Ints, Ints]:
+def with_interfaces(mesh: MeshData) -> tuple[Ints, Ints]:
     """The constrained edges and their tags; then, with tag 0, what else bounds or parts regions."""
     edges = mesh.unique_edges
     n = len(mesh.points)
     sides = regions_beside(mesh.triangles, mesh.regions, edges, n)
-    known = edge_keys(mesh.edges[:, 0], mesh.edges[:, 1], n)
+    known = edge_keys(mesh.edges, n)
     parting = sides[:, 0] != sides[:, 1]
-    parting &= ~np.isin(edge_keys(edges[:, 0], edges[:, 1], n), known)
+    parting &= ~np.isin(edge_keys(edges, n), known)
     missing = edges[parting]
     return (
         np.concatenate([mesh.edges, missing]),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from adaptmesh.adapt.adapt import control_space_on
-from adaptmesh.mesh.to_domain import check_is_mesh
+from adaptmesh.mesh.checks import check_is_mesh
 from adaptmesh.mesh.validate.validate import InvalidMeshError
 from adaptmesh.types import Floats, Index
 from adaptmesh.value import FrozenMapping, Value
@@ -104,7 +104,7 @@ class Report(Value):
         Those of least quality.
     border : str
         How many corners of the border were found, and to what tolerance, if the domain was found
-        from a mesh (see `Domain.of_mesh`); else empty.
+        from a mesh (see `Mesh.to_domain`); else empty.
     """
 
     length_rule: str

@@ -12,7 +12,7 @@ from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import Holes, refuse_holes
 from adaptmesh.domain.outline import Outline
 from adaptmesh.domain.polygon_input import shapes_of
-from adaptmesh.domain.polygons import repaired_domain_of_shapes
+from adaptmesh.domain.polygons import repaired_shapes
 from adaptmesh.errors import DomainError
 from adaptmesh.files.located import located, only_our_errors
 from adaptmesh.io.domains.drawings import Drawing
@@ -119,4 +119,5 @@ def _repaired(dirty: Any, tolerance: float | None, holes: Holes) -> tuple[Domain
         dirty = Outline.of_domain(dirty)
     if isinstance(dirty, Outline):
         return repaired_domain_of_segments(dirty, tolerance)
-    return repaired_domain_of_shapes(shapes_of(dirty), tolerance)
+    given, repairs = repaired_shapes(shapes_of(dirty), tolerance)
+    return Domain.of_given(given), repairs

@@ -16,19 +16,13 @@ from adaptmesh.arrangement import (
     node,
     used_tolerance,
 )
-from adaptmesh.arrangement.numbering import unique_edges, used_points
+from adaptmesh.checks import checked_pairs, checked_points
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.inputs import (
-    Inside,
-    checked_names,
-    checked_pairs,
-    checked_points,
-    labelled,
-    name_of_number,
-)
+from adaptmesh.domain.inputs import Inside, checked_names, labelled, name_of_number
 from adaptmesh.domain.naming import split_names
 from adaptmesh.domain.outline import Outline
 from adaptmesh.errors import DomainError
+from adaptmesh.topology import unique_edges, used_points
 from adaptmesh.types import Bools, Floats, Int64s
 
 from .inside_lines import Lines

@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 
 import metrics
 from adaptmesh.arrangement import Repair, Repairs, at, find_faces
-from adaptmesh.arrangement.numbering import used_points
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import labelled, rows_of_each
-from adaptmesh.domain.seeds import regions_beside
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.distance import distance
+from adaptmesh.topology import regions_beside, used_points
 from adaptmesh.types import Floats, Int64s
 
 from .decimate import Decimated, decimate, turned

@@ -9,6 +9,7 @@ import numpy as np
 
 from adaptmesh.arrangement import Faces
 from adaptmesh.arrangement.winding import walk
+from adaptmesh.topology import components
 from adaptmesh.types import Floats, Int64s
 
 
@@ -41,12 +42,7 @@ def small_loops(
     The size of a loop is twice the largest distance of its points from their mean, in the metric at
     each point.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    n = len(points)
-    graph = coo_array((np.ones(len(edges)), edges.T), shape=(n, n))
-    _, of_point = connected_components(graph, directed=False)
+    of_point = components(len(points), edges)
     of_edge = of_point[edges[:, 0]]
     order, before, through = walk(faces)
     parent_face = np.zeros(faces.count, np.int64)

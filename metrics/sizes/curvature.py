@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from metrics import _core
-from metrics.checks import as_points
+from metrics.checks import as_points, h_limit, number, positive
 from metrics.control import ControlSpace
 from metrics.errors import MetricError
 from metrics.types import Floats, Ints
 
 from .geometry import Geometry, as_curves
-from .given import h_limit, number, positive
 from .growth import slope_of
 
 __all__ = ["BoundaryCurvature", "sampled"]

@@ -7,11 +7,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from metrics.checks import chosen, h_limit, positive
 from metrics.control import ControlSpace
 from metrics.types import Floats
 
 from .geometry import as_geometry
-from .given import chosen, h_limit, positive
 from .growth import Law, grown, slope_of
 
 __all__ = ["Distance"]

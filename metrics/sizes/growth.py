@@ -18,10 +18,9 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
+from metrics.checks import chosen, number
 from metrics.errors import MetricError
 from metrics.types import Floats
-
-from .given import chosen, number
 
 __all__ = ["Law", "grown", "slope_of"]
 

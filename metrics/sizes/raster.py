@@ -10,12 +10,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from metrics.checks import as_numbers
+from metrics.checks import as_numbers, chosen, number, positive
 from metrics.control import ControlSpace
 from metrics.errors import MetricError
 from metrics.types import Floats
-
-from .given import chosen, number, positive
 
 __all__ = ["Raster"]
 

@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from metrics.background import Background
-from metrics.checks import as_points, as_triangles
+from metrics.checks import as_points, as_triangles, positive
 from metrics.control import ControlSpace
 from metrics.errors import MetricError
 from metrics.gradation import check_growth
 from metrics.types import Floats, Ints
 
 from .geometry import Geometry
-from .given import positive
 
 __all__ = ["RegionSizes"]
 

@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from metrics.checks import evaluated, h_limit, positive
 from metrics.control import ControlSpace, Metric, as_control_space
 from metrics.errors import MetricError
 from metrics.types import Floats
 
 from .anisotropic_layer import layered, size_along
 from .geometry import as_curves
-from .given import evaluated, h_limit, positive
 from .growth import slope_of
 
 __all__ = ["Shock"]

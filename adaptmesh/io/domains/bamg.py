@@ -28,9 +28,10 @@ from pathlib import Path
 import numpy as np
 
 from adaptmesh.arrangement import find_faces
+from adaptmesh.checks import LARGEST
 from adaptmesh.curves import Bezier, Curve, Line
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.inputs import LARGEST, Label, labelled
+from adaptmesh.domain.inputs import Label, labelled
 from adaptmesh.errors import FormatError
 from adaptmesh.files.located import located
 from adaptmesh.files.records import TextCursor, one

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
-from adaptmesh.convert import to_shapely
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.outline import Shape
-from adaptmesh.errors import DomainError, FormatError
+from adaptmesh.domain.geojson_shapes import shapes_of_geojson
+from adaptmesh.domain.regions_as_polygons import regions_as_polygons
+from adaptmesh.domain.shape import Shape
+from adaptmesh.errors import FormatError
 from adaptmesh.files.bounded import read_json
 from adaptmesh.files.located import located
 from adaptmesh.files.whole import read_text, replace_files
@@ -43,39 +42,7 @@ def write_geojson(path: str | os.PathLike[str], domain: Domain) -> None:
             "properties": {} if name is None else {"name": name},
             "geometry": json.loads(shapely.to_geojson(area)),
         }
-        for name, area in to_shapely(domain).items()
+        for name, area in regions_as_polygons(domain).items()
     ]
     text = json.dumps({"type": "FeatureCollection", "features": features})
     replace_files({Path(path): text.encode()})
-
-
-def shapes_of_geojson(content: Mapping[str, Any]) -> list[Shape]:
-    """The polygons of a GeoJSON object: a geometry, a feature, or a collection of features.
-
-    Raises
-    ------
-    FormatError
-        If it is not GeoJSON.
-    DomainError
-        If a feature is something else than a Polygon or MultiPolygon, or there is none.
-    """
-    if content["type"] == "FeatureCollection":
-        features = content.get("features")
-        if not isinstance(features, Sequence):
-            raise FormatError("the FeatureCollection has no list of 'features'")
-    else:
-        features = [content]
-    if not features:
-        raise DomainError("it has no features: there is nothing to mesh")
-    shapes = []
-    for number, feature in enumerate(features):
-        if not isinstance(feature, Mapping):
-            raise FormatError(f"feature {number} is not an object but {feature!r}")
-        geometry: Any = feature
-        name = None
-        if feature.get("type") == "Feature":
-            geometry = feature.get("geometry")
-            properties = feature.get("properties")
-            name = properties.get("name") if isinstance(properties, Mapping) else None
-        shapes.append(Shape.of_geojson(geometry, number, None if name in (None, "") else str(name)))
-    return shapes

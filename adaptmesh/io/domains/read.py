@@ -9,9 +9,10 @@ from typing import TypeAlias
 
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import Holes, refuse_holes
-from adaptmesh.domain.outline import Outline, Shape
+from adaptmesh.domain.outline import Outline
 from adaptmesh.domain.polygon_input import without_empty
-from adaptmesh.domain.polygons import domain_of_shapes
+from adaptmesh.domain.polygons import given_of_shapes
+from adaptmesh.domain.shape import Shape
 from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.files.located import located, only_our_errors
 from adaptmesh.io.formats import FORMATS, OUTLINES
@@ -83,7 +84,7 @@ def read_domain(path: str | os.PathLike[str], *, holes: Holes = None) -> Domain:
             return raw
         if isinstance(raw, Outline):
             return raw.domain()
-        return domain_of_shapes(without_empty(raw, f"{path}: "))
+        return Domain.of_given(given_of_shapes(without_empty(raw, f"{path}: ")))
 
 
 def read_raw(path: str | os.PathLike[str], holes: Holes = None) -> Raw:
@@ -98,8 +99,7 @@ def read_raw(path: str | os.PathLike[str], holes: Holes = None) -> Raw:
             return _domain_of_mesh_file(path)
         module, function = OUTLINES[suffix].split(":")
         reader = getattr(import_module(f"adaptmesh.io.domains.{module}"), function)
-        raw: Raw = reader(path, holes) if suffix == ".geo" else reader(path)
-        return raw
+        return reader(path, holes) if suffix == ".geo" else reader(path)
 
 
 def _domain_of_mesh_file(path: Path) -> Domain | Outline:
@@ -111,4 +111,4 @@ def _domain_of_mesh_file(path: Path) -> Domain | Outline:
     found = read_mesh_or_outline(path)
     if isinstance(found, Outline):
         return found
-    return Domain.of_mesh(found) if found.domain is None else found.domain
+    return found.to_domain() if found.domain is None else found.domain

@@ -151,7 +151,7 @@ def decode(data: bytes) -> Content:
             elif name == "Periodic":
                 warnings.warn(
                     "periodic boundaries of Gmsh are passed over; declare them on the domain, "
-                    "Domain.of_mesh(mesh).with_periodic(first, second)",
+                    "mesh.to_domain().with_periodic(first, second)",
                     FormatWarning,
                     stacklevel=5,
                 )

@@ -9,10 +9,9 @@ cross, and on the left of each lies one triangle, on the right none. Every decis
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from adaptmesh.types import Floats, Index, Int64s
+from adaptmesh.topology import components
+from adaptmesh.types import Floats, Index
 
 from .subject import Finding, Subject, finding
 
@@ -70,7 +69,7 @@ def covered_once(s: Subject) -> Finding:
     with np.errstate(over="ignore", invalid="ignore"):
         area = float(s.mesh.areas.sum())
     ends = s.sides.ends(border)
-    pieces = components(len(s.points), ends)[0] - (len(s.points) - len(np.unique(ends)))
+    pieces = _count_components(len(s.points), ends) - (len(s.points) - len(np.unique(ends)))
     wrong = "edges of the border lie over or under other triangles"
     good = f"area {area:.12g}; pieces of border: {pieces}"
     return finding(np.flatnonzero(layers != 1), good, wrong, show)
@@ -90,9 +89,9 @@ def euler(s: Subject) -> Finding:
     border = ends[sides.border]
     n, border_points = np.count_nonzero(s.used), len(np.unique(border))
     spare = len(s.points) - n  # points without a triangle are components of their own
-    by_points = components(len(s.points), ends)[0] - spare
-    by_edges = components(len(s.mesh.triangles), across)[0]
-    border_pieces = components(len(s.points), border)[0] - (len(s.points) - border_points)
+    by_points = _count_components(len(s.points), ends) - spare
+    by_edges = _count_components(len(s.mesh.triangles), across)
+    border_pieces = _count_components(len(s.points), border) - (len(s.points) - border_points)
     holes = border_pieces - border_points + len(border) - by_edges
     found, expected = n - len(ends) + len(s.mesh.triangles), by_points - holes
     note = f"{n} - {len(ends)} + {len(s.mesh.triangles)} = {found}"
@@ -101,8 +100,6 @@ def euler(s: Subject) -> Finding:
     return Finding(1, f"{note}, but {by_points} pieces with {holes} holes make {expected}")
 
 
-def components(n: int, pairs: Index) -> tuple[int, Int64s]:
-    """How many connected components n items have with these links, and that of each item."""
-    graph = coo_array((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(n, n))
-    count, label = connected_components(graph, directed=False)
-    return int(count), label
+def _count_components(n: int, links: Index) -> int:
+    """How many connected components n items have with these links."""
+    return int(components(n, links).max(initial=-1)) + 1

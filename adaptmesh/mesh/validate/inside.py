@@ -12,9 +12,8 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from adaptmesh.domain.seeds import OUTSIDE, parts_between, regions_beside, triangles_beside
+from adaptmesh.topology import OUTSIDE, parts_between, regions_beside, triangles_beside
 from adaptmesh.types import Int64s
 
 from .domain_subject import DomainSubject
@@ -53,7 +52,7 @@ def sides_of_rows(s: DomainSubject) -> Sides:
     return Sides(np.tile(edge, 2), np.concatenate(beside), expected.T.ravel())
 
 
-def regions_beside_lines(s: DomainSubject) -> NDArray[np.int32]:
+def regions_beside_lines(s: DomainSubject) -> Int64s:
     """The regions on the left and the right of each line in the domain, (l, 2)."""
     domain, lines = s.domain, s.lines
     straight = domain.curved.segment_runs[domain.piece_segments] < 0

@@ -7,9 +7,10 @@ from functools import partial
 
 import numpy as np
 
+from adaptmesh.topology import edge_keys
 from adaptmesh.types import Index
 
-from .subject import SHOWN, Finding, Subject, edge_keys, finding
+from .subject import SHOWN, Finding, Subject, finding
 
 
 def not_empty(s: Subject) -> Finding:
@@ -108,7 +109,7 @@ def points_used(s: Subject) -> Finding:
 
 def constrained_are_edges(s: Subject) -> Finding:
     """Every constrained edge is the side of a triangle, and listed once."""
-    keys = edge_keys(s.mesh.edges[:, 0], s.mesh.edges[:, 1], len(s.mesh.points))
+    keys = edge_keys(s.mesh.edges, len(s.mesh.points))
     order = np.argsort(keys, kind="stable")
     again = np.zeros(len(keys), bool)
     again[order[1:]] = keys[order[1:]] == keys[order[:-1]]
@@ -125,7 +126,7 @@ def constrained_are_edges(s: Subject) -> Finding:
 def border_is_constrained(s: Subject) -> Finding:
     """The sides with a single triangle are constrained edges."""
     border = s.sides.border
-    constrained = np.sort(edge_keys(s.mesh.edges[:, 0], s.mesh.edges[:, 1], len(s.mesh.points)))
+    constrained = np.sort(edge_keys(s.mesh.edges, len(s.mesh.points)))
     keys = s.sides.keys[border]
     place = np.searchsorted(constrained, keys)
     bad = border[np.append(constrained, -1)[place] != keys]

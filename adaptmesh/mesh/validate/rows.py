@@ -17,9 +17,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from adaptmesh.topology import edge_keys
 from adaptmesh.types import Floats, Index, Int64s
-
-from .subject import edge_keys
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -113,7 +112,7 @@ def _grouped(pairs: Index, n: int) -> dict[int, Index]:
     """The numbers of the pairs (k, 2) with each key; see `edge_keys`."""
     if not len(pairs):
         return {}
-    keys = edge_keys(pairs[:, 0], pairs[:, 1], n)
+    keys = edge_keys(pairs, n)
     order = np.argsort(keys, kind="stable")
     first = np.flatnonzero(np.diff(keys[order], prepend=-1))
     groups = np.split(order, first[1:])

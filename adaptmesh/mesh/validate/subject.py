@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh._core import orient2d, sweep_border
-from adaptmesh.types import Bools, Floats, Index, Int64s
+from adaptmesh.topology import HalfEdges
+from adaptmesh.types import Bools, Floats, Index
 
 if TYPE_CHECKING:
-    from adaptmesh.mesh.mesh import Mesh
+    from adaptmesh.mesh.data import MeshData
 
 SHOWN = 5  # offenders named for each check
 
@@ -38,7 +39,7 @@ def finding(bad: Index, good: str, wrong: str, show: Callable[[int], str]) -> Fi
 class Subject:
     """A mesh under examination, and what several checks derive from it."""
 
-    mesh: Mesh
+    mesh: MeshData
 
     @cached_property
     def exponent(self) -> int:
@@ -64,9 +65,9 @@ class Subject:
         return self.scale(self.mesh.points)
 
     @cached_property
-    def sides(self) -> Sides:
+    def sides(self) -> HalfEdges:
         """The sides of the triangles, edge by edge."""
-        return Sides.of(self.mesh)
+        return HalfEdges.of(self.mesh.triangles, len(self.mesh.points))
 
     @cached_property
     def border_sweep(self) -> tuple[tuple[int, int], NDArray[np.int32]]:
@@ -94,50 +95,3 @@ class Subject:
     def edge(self, e: int) -> str:
         """An edge of the triangles in words."""
         return self.at(*self.sides.ends(np.array([e]))[0])
-
-
-@dataclass(frozen=True)
-class Sides:
-    """The directed sides of the triangles, sorted so that those of one edge stand together.
-
-    ``tail``, ``head`` and ``triangle`` describe the sorted sides; edge ``e`` owns ``count[e]`` of
-    them from ``first[e]`` on; ``keys`` are the sorted keys of the edges, see `edge_keys`.
-    """
-
-    tail: Int64s
-    head: Int64s
-    triangle: Int64s
-    first: Int64s
-    count: Int64s
-    keys: Int64s
-
-    @classmethod
-    def of(cls, mesh: Mesh) -> Sides:
-        t = mesh.triangles.astype(np.int64)
-        tail, head = t.T.ravel(), t[:, [1, 2, 0]].T.ravel()
-        # the direction is the last bit of the key: equal sides of an edge stand together too
-        keys = 2 * edge_keys(tail, head, len(mesh.points)) + (tail > head)
-        order = np.argsort(keys)
-        edges = keys[order] >> 1
-        first = np.flatnonzero(np.concatenate([[True], edges[1:] != edges[:-1]]))
-        count = np.diff(np.append(first, len(edges)))
-        return cls(tail[order], head[order], order % len(t), first, count, edges[first])
-
-    @cached_property
-    def border(self) -> Int64s:
-        """Numbers of the edges with a single triangle; it lies on their left."""
-        return np.flatnonzero(self.count == 1)
-
-    def missing(self, keys: Int64s) -> Bools:
-        """Which of these keys belong to no edge."""
-        place = np.minimum(np.searchsorted(self.keys, keys), len(self.keys) - 1)
-        return self.keys[place] != keys
-
-    def ends(self, edges: Index) -> Int64s:
-        """Tail and head of some edges, (k, 2), as the first triangle of each runs along it."""
-        return np.stack([self.tail[self.first[edges]], self.head[self.first[edges]]], axis=1)
-
-
-def edge_keys(a: Index, b: Index, n: int) -> Int64s:
-    """One number for each pair out of n points, whatever their order."""
-    return np.minimum(a, b).astype(np.int64) * n + np.maximum(a, b)

@@ -27,7 +27,7 @@ from .subject import Finding, Subject
 
 if TYPE_CHECKING:
     from adaptmesh.domain.domain import Domain
-    from adaptmesh.mesh.mesh import Mesh
+    from adaptmesh.mesh.data import MeshData
 
 __all__ = ["Check", "InvalidMeshError", "Validity", "validate"]
 
@@ -178,7 +178,7 @@ class Validity:
         return "\n".join(lines)
 
 
-def validate(mesh: Mesh, *, tolerance: float | None = None) -> Validity:
+def validate(mesh: MeshData, *, tolerance: float | None = None) -> Validity:
     """Check every invariant of a mesh, and hold it against its domain if it has one.
 
     Parameters

@@ -49,7 +49,7 @@ def of_grains(n):
     triangles = np.concatenate([np.stack([a, b, b + 1], 1), np.stack([a, b + 1, a + 1], 1)])
     regions = np.tile((i // 2) * n + j // 2 + 1, 2)
     mesh = am.Mesh(points, triangles, regions=regions)
-    return lambda: am.Domain.of_mesh(mesh)
+    return lambda: mesh.to_domain()
 
 
 def of_holes(n):

@@ -8,8 +8,12 @@ import shapely
 from reference.transforms import TRANSFORMS
 
 from adaptmesh import Domain, FormatWarning, read_domain, repair
-from adaptmesh.domain.polygons import domain_of_polygons
+from adaptmesh.domain.polygons import given_of_polygons
 from adaptmesh.errors import DomainError
+
+
+def domain_of_polygons(polygons, names):
+    return Domain.of_given(given_of_polygons(polygons, names))
 
 
 def region_area(domain, name):

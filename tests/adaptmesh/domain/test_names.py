@@ -55,7 +55,7 @@ def test_each_way_to_choose_in_each_way_to_make_a_domain(transform):
         am.Domain.from_curves(lines).with_names(names),
         am.repair(am.Outline(points, segments, names=names))[0],
         am.repair([square, hole])[0].with_names(names),
-        am.Domain.of_mesh(am.generate(am.Domain(points, segments), transform.scale)).with_names(
+        am.generate(am.Domain(points, segments), transform.scale).to_domain().with_names(
             names
         ),
     ]  # fmt: skip

@@ -86,7 +86,7 @@ def test_everything_comes_back_or_is_said(tmp_path, way, place):
     again, _ = written_and_read(tmp_path, way, back)  # what is read is written as it was
     assert_same(mesh, again)
     assert again.periodic_vertices().keys() == mesh.periodic_vertices().keys()
-    domain = am.Domain.of_mesh(back)
+    domain = back.to_domain()
     new = am.generate(domain, 0.4 * np.sqrt(domain.area / 12))
     (pairs,) = new.periodic_vertices().values()
     assert len(pairs) > 2

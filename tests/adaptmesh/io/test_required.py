@@ -65,7 +65,7 @@ def test_borders_as_curves_stop_at_required_vertices(tmp_path):
         required_edges=np.arange(0, len(mesh.edges), 7),
     )
     io.write(tmp_path / "a.mesh", marked)
-    domain = am.Domain.of_mesh(io.read(tmp_path / "a.mesh"), corner_angle=40)
+    domain = io.read(tmp_path / "a.mesh").to_domain(corner_angle=40)
     assert domain.segment_is_frozen.sum() == len(rim)
     for size in (0.05, 0.5):
         new = am.generate(domain, size)

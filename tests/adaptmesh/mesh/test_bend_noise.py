@@ -19,7 +19,7 @@ ROUNDED = {
 def of_bare(mesh, points):
     turned = am.Mesh(points, mesh.triangles, edges=mesh.edges).areas.sum() < 0
     triangles = mesh.triangles[:, ::-1] if turned else mesh.triangles
-    return am.Domain.of_mesh(am.Mesh(points, triangles, edges=mesh.edges))
+    return am.Mesh(points, triangles, edges=mesh.edges).to_domain()
 
 
 @pytest.mark.parametrize("rounded", ROUNDED)

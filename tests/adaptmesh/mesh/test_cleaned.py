@@ -41,7 +41,7 @@ def test_blocks_become_one_mesh(transform):
         assert [c.name for c in one.validate().broken] == ["border is constrained"]
         assert np.array_equal(one.points, points[one.kept])
         assert one.areas.sum() == pytest.approx(abs(transform.determinant), rel=1e-7)
-        domain = am.Domain.of_mesh(one)
+        domain = one.to_domain()
         assert len(domain.seeds) == 2 and not len(domain.holes)
     with pytest.raises(am.DomainError, match="merge less"):
         mesh.cleaned(merge=0.3 * transform.scale)
@@ -71,13 +71,13 @@ def test_an_edge_listed_twice_says_the_same_or_is_refused():
     assert once.edges.tolist() == [[0, 1], [1, 2], [2, 3], [3, 0]]
     assert once.edge_tags.tolist() == [1, 2, 3, 4]
     assert once.required_edges.tolist() == [0, 3]
-    domain = am.Domain.of_mesh(twice)
-    assert domain == am.Domain.of_mesh(once)
+    domain = twice.to_domain()
+    assert domain == once.to_domain()
     for keep in (False, True):
         mesh = am.adapt(twice, 0.3, keep=keep)
         assert mesh.validate().ok and len(mesh.edges_named("left")) == 1
     other = square(edges=edges, edge_tags=[1, 2, 3, 3, 0, 4, 2])
-    for use in (other.cleaned, lambda: am.Domain.of_mesh(other), lambda: am.adapt(other, 0.3)):
+    for use in (other.cleaned, lambda: other.to_domain(), lambda: am.adapt(other, 0.3)):
         with pytest.raises(am.DomainError, match=r"edges 0 and 2 .*'bottom' and the other 'top'"):
             use()
 

@@ -20,7 +20,7 @@ def bare(mesh):
 def test_a_ring_of_two_circles_is_found_again():
     true = am.Domain.from_curves([Circle((0, 0), 2), Circle((0, 0), 1)], names={"hole": [1]})
     coarse = bare(am.generate(true, 0.2))
-    polygon, smooth = am.Domain.of_mesh(coarse), am.Domain.of_mesh(coarse, corner_angle=30)
+    polygon, smooth = coarse.to_domain(), coarse.to_domain(corner_angle=30)
     assert abs(smooth.area - true.area) < 0.05 * abs(polygon.area - true.area)
     fine = am.generate(smooth, 0.02)
     radii = np.hypot(*fine.points[np.unique(fine.edges)].T)
@@ -32,7 +32,7 @@ def test_a_ring_of_two_circles_is_found_again():
 def test_corners_stay_and_straight_sides_are_straight():
     half = [Arc((0, 0), 1, 0, np.pi), Line((-1, 0), (1, 0))]
     true = am.Domain.from_curves(half, names={"arc": [0], "base": [1]}, holes=())
-    smooth = am.Domain.of_mesh(bare(am.generate(true, 0.15)), corner_angle=30)
+    smooth = bare(am.generate(true, 0.15)).to_domain(corner_angle=30)
     kinds = sorted(type(c).__name__ for c in smooth.curved.curves)
     assert kinds == ["Line", "Spline"]
     assert smooth.area == pytest.approx(np.pi / 2, rel=1e-4)
@@ -44,7 +44,7 @@ def test_corners_stay_and_straight_sides_are_straight():
 
 def test_a_square_has_no_curves():
     mesh = bare(am.generate(am.Domain.rectangle(0, 0, 2, 1), 0.3))
-    domain = am.Domain.of_mesh(mesh, corner_angle=40)
+    domain = mesh.to_domain(corner_angle=40)
     assert all(isinstance(c, Line) for c in domain.curved.curves)
     assert len(domain.points) == 4
     assert domain.names == mesh.names
@@ -55,7 +55,7 @@ def test_regions_and_tags_stay():
     true = am.Domain.from_curves(
         curves, names={5: [0], 9: [1]}, holes=(), regions={3: (0, 0), 4: (1.5, 0)}
     )
-    smooth = am.Domain.of_mesh(bare(am.generate(true, 0.2)), corner_angle=30)
+    smooth = bare(am.generate(true, 0.2)).to_domain(corner_angle=30)
     mesh = am.generate(smooth, 0.1)
     assert set(mesh.edge_tags) == {5, 9}
     assert mesh.areas[mesh.regions == 3].sum() == pytest.approx(np.pi, rel=5e-3)
@@ -79,4 +79,4 @@ def test_a_chain_is_cut_at_corners_and_around_straight_sides():
 def test_what_is_no_angle(corner_angle):
     mesh = bare(am.generate(am.Domain.rectangle(0, 0, 2, 1), 0.5))
     with pytest.raises(DomainError, match="corner_angle"):
-        am.Domain.of_mesh(mesh, corner_angle=corner_angle)
+        mesh.to_domain(corner_angle=corner_angle)

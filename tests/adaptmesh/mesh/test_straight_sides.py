@@ -85,7 +85,7 @@ def test_rounded_straight_sides_have_no_corners(transform, rounded):
     assert found.corners == 7
     assert found.vertices == len(np.unique(fine.edges))
     border = points[np.unique(fine.edges)]
-    assert farthest(border, am.Domain.of_mesh(mesh)) <= found.tolerance * (1 + 1e-6)
+    assert farthest(border, mesh.to_domain()) <= found.tolerance * (1 + 1e-6)
     assert am.validate(coarse), am.validate(coarse)
     assert f"7 corners of {found.vertices} vertices" in str(am.measure(coarse, size(0.5)))
 
@@ -99,10 +99,10 @@ def test_true_corners_of_tiny_angles_stay(rounded, offset):
         ring[1] = ring[[0, 2]].mean(axis=0)
         straight = am.generate(am.Domain.polygon(ring), 40.0)
         points = ROUNDED[rounded](straight.points)
-        said = am.Domain.of_mesh(bare(straight, points)).corners_found
+        said = bare(straight, points).to_domain().corners_found
         ring[1] += times * said.tolerance * np.array([0.1, -1]) / np.hypot(0.1, 1)
         bent = am.generate(am.Domain.polygon(ring), 40.0)
-        found = am.Domain.of_mesh(bare(bent, ROUNDED[rounded](bent.points))).corners_found
+        found = bare(bent, ROUNDED[rounded](bent.points)).to_domain().corners_found
         assert found.corners == corners
         assert found.tolerance == pytest.approx(said.tolerance, rel=0.01)
 
@@ -111,8 +111,8 @@ def test_the_tolerance_is_an_argument():
     ring = [(0, 0), (1, 1e-4), (2, 0), (2, 1), (0, 1)]
     mesh = am.generate(am.Domain.polygon(ring), 0.1)
     mesh = bare(mesh, mesh.points)
-    assert len(am.Domain.of_mesh(mesh).points) == 5
-    loose = am.Domain.of_mesh(mesh, straight_tolerance=2e-4)
+    assert len(mesh.to_domain().points) == 5
+    loose = mesh.to_domain(straight_tolerance=2e-4)
     assert len(loose.points) == 4
     assert "straight_tolerance" in str(loose.corners_found)
     coarse = am.adapt(mesh, 1.0, straight_tolerance=2e-4)
@@ -121,7 +121,7 @@ def test_the_tolerance_is_an_argument():
         am.adapt(coarse, 1.0, straight_tolerance=1e-4)
     for bad in (-1.0, np.nan, np.inf, "small"):
         with pytest.raises(am.DomainError, match="straight_tolerance: expected a distance"):
-            am.Domain.of_mesh(mesh, straight_tolerance=bad)
+            mesh.to_domain(straight_tolerance=bad)
 
 
 def test_numbers_that_someone_chose_are_exact():
@@ -132,7 +132,7 @@ def test_numbers_that_someone_chose_are_exact():
         assert digits_of(points, 0.2).why == "double precision"
     typed = np.array([(500000, 5200000), (500100, 5200001), (500200, 5200000), (500100, 5200090)])
     mesh = am.Mesh(typed.astype(float), [[0, 1, 3], [1, 2, 3]])
-    assert len(am.Domain.of_mesh(mesh).points) == 4
+    assert len(mesh.to_domain().points) == 4
 
 
 @pytest.mark.parametrize(
@@ -170,12 +170,12 @@ def test_what_is_nearer_than_the_tolerance_is_not_swallowed():
         ring = [(0, 0), (1, 0), (1, 1), (0.5 + gap, 1), (0.5, 0.3), (0.5 - gap, 1), (0, 1)]
         mesh = am.generate(am.Domain.polygon(ring), 0.2)
         mesh = bare(mesh, mesh.points)
-        domain = am.Domain.of_mesh(mesh, straight_tolerance=1e-12)
+        domain = mesh.to_domain(straight_tolerance=1e-12)
         assert len(domain.points) == 7
-        assert am.Domain.of_mesh(mesh).area == pytest.approx(domain.area, abs=1e-12)
+        assert mesh.to_domain().area == pytest.approx(domain.area, abs=1e-12)
     hole = 1e-6 * HOLE + 0.5
     mesh = am.generate(am.Domain.polygon(RING, [hole]), 0.2)
-    assert len(am.Domain.of_mesh(bare(mesh, significant(9)(mesh.points))).points) == 7
+    assert len(bare(mesh, significant(9)(mesh.points)).to_domain().points) == 7
 
 
 def test_smooth_borders_of_rounded_coordinates_stay_smooth():
@@ -183,9 +183,9 @@ def test_smooth_borders_of_rounded_coordinates_stay_smooth():
     disc = am.Domain.from_curves([am.curves.Circle((0, 0), 100.0)])
     fine = am.generate(disc, lambda x: 0.4 + 0.4 * np.abs(100 - np.hypot(*x.T)))
     mesh = bare(fine, significant(5)(fine.points))
-    polygon = am.Domain.of_mesh(mesh)
+    polygon = mesh.to_domain()
     assert polygon.corners_found.corners < 0.6 * polygon.corners_found.vertices
-    smooth = am.Domain.of_mesh(mesh, corner_angle=40)
+    smooth = mesh.to_domain(corner_angle=40)
     coarse = am.generate(smooth, 20.0)
     assert len(coarse.edges) < 40
     np.testing.assert_allclose(np.hypot(*coarse.points[coarse.edges[:, 0]].T), 100, atol=1e-2)
@@ -206,7 +206,7 @@ def test_straight_sides_between_arcs_stay_straight(transform: Transform):
     ]
     fine = am.generate(am.Domain.from_curves(curves), 0.05 * transform.scale)
     for points in (fine.points, significant(12)(fine.points)):
-        domain = am.Domain.of_mesh(bare(fine, points), corner_angle=40)
+        domain = bare(fine, points).to_domain(corner_angle=40)
         straight = domain.points[domain.segments[domain.curved.segment_runs < 0]]
         assert len(straight) == 2
         lengths = np.hypot(*np.diff(straight, axis=1)[:, 0].T)

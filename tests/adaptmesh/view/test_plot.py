@@ -338,7 +338,7 @@ def test_numbers_do_not_overlap():
 
 def test_what_is_no_mesh_is_refused():
     for wrong in ([1], None, "a.vtu"):
-        with pytest.raises(DomainError, match="a Mesh is wanted"):
+        with pytest.raises(DomainError, match="expected a Mesh"):
             plot(wrong)
 
 
