@@ -16,6 +16,7 @@ import numpy as np
 from adaptmesh.adapt.adapt import adapt
 from adaptmesh.checks import expect_function
 from adaptmesh.errors import BudgetError, MetricError
+from adaptmesh.geometry.smallest_rectangle import longer_side
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.transfer.transfer import METHODS
 from adaptmesh.transfer.transfer import transfer as transferred
@@ -91,8 +92,8 @@ def adapt_loop(
         same everywhere. The others are transferred all the same.
     h_min, h_max, max_anisotropy, gradation : optional
         Bounds on sizes, their ratio and their growth; see `metrics.Limits`. By default `h_max` is
-        a quarter of the larger extent of the mesh: derivatives cannot be recovered across a mesh
-        that is one triangle thick.
+        a quarter of the longer side of the smallest rectangle around the mesh, in any direction:
+        derivatives cannot be recovered across a mesh that is one triangle thick.
     recovery : {"green", "least squares", "projection"}, optional
         How Hessians are found from values, see `metrics.hessians`. Where they are noisy, as where
         a solver oscillates, the fit by least squares smooths them.
@@ -340,8 +341,8 @@ def _explained(history: History, number: int, clock: Clock) -> Iterator[None]:
 
 
 def largest_size(mesh: Mesh) -> float:
-    """That of a loop, where none is given."""
-    return SHARE_OF_EXTENT * float(np.ptp(mesh.points, axis=0).max())
+    """That of a loop, where none is given: a share of the mesh, whichever way it is turned."""
+    return SHARE_OF_EXTENT * longer_side(mesh.points)
 
 
 def with_domain(mesh: Mesh) -> Mesh:

@@ -5,9 +5,11 @@ import gc
 
 import numpy as np
 import pytest
+from reference.transforms import SIMILARITIES
 
 import adaptmesh as am
 import metrics
+from adaptmesh.loop.adapt_loop import largest_size
 
 
 def front(x):
@@ -443,3 +445,19 @@ def test_what_solve_does_with_its_arrays_later_does_not_matter(square):
     assert np.array_equal(history[0].fields["solution"], sampled(square))
     with pytest.raises(ValueError, match="read-only"):
         history[0].fields["solution"][0] = 1
+
+
+@pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
+def test_the_largest_size_does_not_depend_on_the_axes(transform):
+    """A layer along a line is resolved across; along it, sizes are the largest allowed."""
+    corners = np.array([(0, 0), (1, 0), (1, 0.4), (0.4, 0.6), (0, 0.6)])
+
+    def solve(mesh):
+        x = transform.inverse(mesh.points)
+        return np.tanh(30 * (x[:, 0] + 0.3 * x[:, 1] - 0.6))
+
+    mesh = am.generate(am.Domain.polygon(transform(corners)), 0.08 * transform.scale)
+    assert largest_size(mesh) == pytest.approx(0.25 * transform.scale, rel=1e-8)
+    history = am.adapt_loop(solve, mesh, target_vertices=300, max_iterations=6)
+    assert len(history.mesh.points) == pytest.approx(300, rel=0.06)
+    assert history.errors["solution"][-1] / transform.scale == pytest.approx(6.9e-5, rel=0.12)
