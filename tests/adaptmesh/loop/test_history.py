@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import adaptmesh as am
+from adaptmesh.loop import history_files
 
 
 def solve(mesh, previous):
@@ -148,14 +149,14 @@ def test_a_history_is_not_written_over(start, whole, tmp_path):
 
 def test_an_interruption_of_saving_leaves_what_was_whole(start, whole, tmp_path, monkeypatch):
     am.History(whole[:3], options=whole.options).save(tmp_path)
-    write = am.history_files.replace_files
+    write = history_files.replace_files
 
     def full(contents):
         if any(path.name == "history.json" for path in contents):
             raise am.FormatError("disk full")
         write(contents)
 
-    monkeypatch.setattr(am.history_files, "replace_files", full)
+    monkeypatch.setattr(history_files, "replace_files", full)
     with pytest.raises(am.LoopError, match="iteration 3, save: FormatError: disk full") as caught:
         am.adapt_loop(solve, start, resume=tmp_path, save=tmp_path, **OPTIONS)
     assert len(caught.value.history) == 4
