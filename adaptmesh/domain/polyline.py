@@ -144,7 +144,7 @@ class _Refinement:
         height = np.abs(off[..., 0] * chord[:, None, 1] - off[..., 1] * chord[:, None, 0]).max(
             axis=1
         )
-        reach = np.hypot(off[..., 0], off[..., 1]).max(axis=1)
+        self.reach = reach = np.hypot(off[..., 0], off[..., 1]).max(axis=1)
         self.height = np.where(length > 0, height / np.where(length > 0, length, 1), reach)
         self.turn[(length == 0) & (reach > 0)] = np.inf  # there and back again
         still = np.flatnonzero(reach == 0)
@@ -208,6 +208,8 @@ class _Refinement:
         stuck = self.u[bad, 1] - self.u[bad, 0] < SHORTEST * np.maximum(1, self.u[bad, 1])
         stuck |= (self.height[bad] <= self.rounding) & ~(self.turn[bad] > 1e-3)
         chord, vertex = self.beside
+        # What is smaller than rounding all lies beside one another, however often it is halved.
+        stuck |= (self.reach[bad] <= self.rounding) & np.isin(bad, chord)
         same = self.points[self.ends[chord]] == self._all_points()[vertex][:, None]
         stuck |= np.isin(bad, chord[same.all(axis=2).any(axis=1)])
         if len(self.u) > most:
@@ -218,6 +220,11 @@ class _Refinement:
     def _explain(self, k: int) -> str:
         """Why a chord would have to be halved for ever, and what to do."""
         me, at = self.name(k), self.place(k)
+        if self.reach[k] <= self.rounding:
+            return (
+                f"{me} at {at} has parts smaller than can be told apart in a domain that is "
+                f"{self.extent:g} wide: leave it out, or what makes the domain so large"
+            )
         for other in self.crossed[1][self.crossed[0] == k].tolist():
             line = other - len(self.ends)
             them = (
@@ -263,14 +270,14 @@ class _Refinement:
         self.points = np.concatenate([self.points, points_on(self.runs, self.run[bad], middle)])
         kept = np.ones(len(self.u), bool)
         kept[bad] = False
-        old = self.run, self.u, self.ends, self.turn, self.height, self.hulls
+        old = self.run, self.u, self.ends, self.turn, self.height, self.reach, self.hulls
         self._look(
             np.repeat(self.run[bad], 2),
             np.stack([self.u[bad, 0], middle, middle, self.u[bad, 1]], axis=1).reshape(-1, 2),
             np.stack([self.ends[bad, 0], new, new, self.ends[bad, 1]], axis=1).reshape(-1, 2),
         )
-        looked = self.run, self.u, self.ends, self.turn, self.height, self.hulls
-        self.run, self.u, self.ends, self.turn, self.height, self.hulls = (
+        looked = self.run, self.u, self.ends, self.turn, self.height, self.reach, self.hulls
+        self.run, self.u, self.ends, self.turn, self.height, self.reach, self.hulls = (
             np.concatenate([a[kept], b]) for a, b in zip(old, looked, strict=True)
         )
 

@@ -57,6 +57,51 @@ def inner_points(area: Any) -> list[Floats]:
     return list(shapely.get_coordinates(inner))
 
 
+def overlaps(faces: Mapping[int, Any], share: float) -> list[tuple[int, int, float]]:
+    """Pairs of surfaces with more than this share of the smaller one in common, and that area."""
+    import shapely
+
+    numbers, areas = list(faces), list(faces.values())
+    tree = shapely.STRtree(areas)
+    first, second = tree.query(areas, predicate="intersects")
+    out = []
+    for i, j in sorted(zip(first.tolist(), second.tolist(), strict=True)):
+        if i < j:
+            common = areas[i].intersection(areas[j]).area
+            if common > share * min(areas[i].area, areas[j].area):
+                out.append((numbers[i], numbers[j], common))
+    return out
+
+
+def seeds_of_cells(
+    lines: Sequence[Floats],
+    faces: Mapping[int, Any],
+    groups: Mapping[str, Sequence[int]],
+    tolerance: float,
+) -> tuple[list[Floats], dict[str, list[Floats]]]:
+    """As `seeds_of`, of surfaces that may overlap and lines that may cross: in each cell of lines.
+
+    A cell belongs to the first surface that it lies in, and to a hole if it lies in none. Seeds
+    keep away from lines by 4 times the tolerance; what is too narrow for that has none.
+    """
+    import shapely
+
+    region_of = {k: name for name, numbers in groups.items() for k in numbers}
+    drawn = shapely.union_all([shapely.LineString(line) for line in lines])
+    cells = shapely.get_parts(shapely.polygonize(shapely.get_parts(drawn)))
+    cores = shapely.difference(cells, drawn.buffer(4 * tolerance))
+    numbers, tree = list(faces), shapely.STRtree(list(faces.values()))
+    holes: list[Floats] = []
+    regions: dict[str, list[Floats]] = {}
+    for seed in inner_points(cores):
+        owners = tree.query(shapely.Point(seed), predicate="intersects")
+        if not len(owners):
+            holes.append(seed)
+        elif (owner := numbers[owners.min()]) in region_of:
+            regions.setdefault(region_of[owner], []).append(seed)
+    return holes, regions
+
+
 def joined_lines(lines: Sequence[Floats], tolerance: float) -> list[Floats]:
     """The same lines, where ends within the tolerance are made equal."""
     ends = np.array([line[k] for line in lines for k in (0, -1)])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 from adaptmesh.arrangement import Repair, Repairs, used_tolerance
@@ -16,8 +15,10 @@ from adaptmesh.domain.polygons import repaired_shapes
 from adaptmesh.errors import DomainError
 from adaptmesh.files.located import located, only_our_errors
 from adaptmesh.io.domains.drawings import Drawing
+from adaptmesh.io.domains.geo import PlaneModel
 
 from .segments import repaired_domain_of_segments
+from .surfaces import repaired_domain_of_surfaces
 
 __all__ = ["Repair", "Repairs", "repair"]
 
@@ -94,15 +95,16 @@ def repair(
     if isinstance(dirty, (str, os.PathLike)):
         from adaptmesh.io.domains.read import read_raw
 
-        raw = read_raw(dirty, holes)
+        raw = read_raw(dirty)
         with only_our_errors(dirty), located(dirty, DomainError):
-            is_script = Path(dirty).suffix.lower() == ".geo"
-            return _repaired(raw, tolerance, None if is_script else holes)
+            return _repaired(raw, tolerance, holes)
     return _repaired(dirty, tolerance, holes)
 
 
 def _repaired(dirty: Any, tolerance: float | None, holes: Holes) -> tuple[Domain, Repairs]:
     """As `repair`, without paths."""
+    if isinstance(dirty, PlaneModel):
+        return repaired_domain_of_surfaces(dirty, tolerance, holes)
     if isinstance(dirty, Drawing) and not dirty.is_straight:
         dirty, holes = dirty.domain(holes), None
     if isinstance(dirty, Drawing):

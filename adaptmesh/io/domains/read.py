@@ -15,12 +15,12 @@ from adaptmesh.domain.polygons import given_of_shapes
 from adaptmesh.domain.shape import Shape
 from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.files.located import located, only_our_errors
+from adaptmesh.io.domains.drawings.drawing import Drawing
+from adaptmesh.io.domains.geo.plane_model import PlaneModel
 from adaptmesh.io.formats import FORMATS, OUTLINES
 from adaptmesh.io.read import read_mesh_or_outline
 
-from .drawings.drawing import Drawing
-
-Raw: TypeAlias = Domain | Outline | Drawing | list[Shape]
+Raw: TypeAlias = Domain | Outline | Drawing | PlaneModel | list[Shape]
 
 
 def read_domain(path: str | os.PathLike[str], *, holes: Holes = None) -> Domain:
@@ -74,12 +74,11 @@ def read_domain(path: str | os.PathLike[str], *, holes: Holes = None) -> Domain:
     --------
     repair : takes the path of a file that is not clean.
     """
-    raw = read_raw(path, holes)
+    raw = read_raw(path)
     with only_our_errors(path), located(path, DomainError):
-        if isinstance(raw, Drawing):
+        if isinstance(raw, (Drawing, PlaneModel)):
             return raw.domain(holes)
-        if Path(path).suffix.lower() != ".geo":
-            refuse_holes(holes, "a mesh, polygons or points in holes")
+        refuse_holes(holes, "a mesh, polygons or points in holes")
         if isinstance(raw, Domain):
             return raw
         if isinstance(raw, Outline):
@@ -87,11 +86,8 @@ def read_domain(path: str | os.PathLike[str], *, holes: Holes = None) -> Domain:
         return Domain.of_given(given_of_shapes(without_empty(raw, f"{path}: ")))
 
 
-def read_raw(path: str | os.PathLike[str], holes: Holes = None) -> Raw:
-    """What is in a file that `read_domain` can read, before it is checked.
-
-    A script becomes a domain at once, with these holes.
-    """
+def read_raw(path: str | os.PathLike[str]) -> Raw:
+    """What is in a file that `read_domain` can read, before it is checked."""
     path = Path(path)
     suffix = path.suffix.lower()
     with only_our_errors(path), located(path, DomainError):
@@ -99,7 +95,7 @@ def read_raw(path: str | os.PathLike[str], holes: Holes = None) -> Raw:
             return _domain_of_mesh_file(path)
         module, function = OUTLINES[suffix].split(":")
         reader = getattr(import_module(f"adaptmesh.io.domains.{module}"), function)
-        return reader(path, holes) if suffix == ".geo" else reader(path)
+        return reader(path)
 
 
 def _domain_of_mesh_file(path: Path) -> Domain | Outline:

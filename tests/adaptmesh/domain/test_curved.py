@@ -369,3 +369,11 @@ def test_curves_that_turn_more_than_an_edge_may_meet_in_a_corner():
     assert (np.hypot(*vertices(domain).T) < 1e-12).any()
     for size in (3.0, 0.37, 0.2):
         am.generate(domain, size).validate().raise_if_invalid()
+
+
+def test_circles_far_smaller_than_rounding_are_refused_at_once():
+    """They were halved until the memory was full."""
+    curves = [Circle((1, 1), 0.4), Line((0, 0), (4e18, 0)), Line((4e18, 0), (0, 4e18))]
+    curves += [Line((0, 4e18), (0, 0))]
+    with pytest.raises(DomainError, match="smaller than can be told apart"):
+        Domain.from_curves(curves, join_tolerance=0.0)

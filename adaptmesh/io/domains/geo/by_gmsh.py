@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 import warnings
-from collections.abc import Container, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,17 +21,15 @@ from typing import Any
 import numpy as np
 
 from adaptmesh.curves import Arc, BSpline, Curve, Line
-from adaptmesh.domain.coincident_curves import curves_once
-from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.inputs import Holes, refuse_holes
 from adaptmesh.domain.inscribed_polygon import extent_of
-from adaptmesh.domain.surfaces import joined_lines, seeds_of
+from adaptmesh.domain.surfaces import joined_lines
 from adaptmesh.errors import FormatError, FormatWarning
 from adaptmesh.io.domains.drawings.drawing import JOINED, affine_arc
 from adaptmesh.types import Floats
 
 from .gmsh_script import MENTIONED, SafeScript, safe_script
 from .groups import names_of_groups
+from .plane_model import CurvesByNumber, PlaneModel, samples_of
 
 SECONDS = 60
 """Of processor time that a script may take in Gmsh."""
@@ -45,16 +43,14 @@ SAME_RADIUS = 1e-6
 FLAT = 1e-9
 """Share of the extent by which heights of a plane domain may differ."""
 
-_SAMPLES = np.linspace(0, 1, 33)  # on each curve, for polygons in which seeds are found
-
 
 def is_installed() -> bool:
     """Whether the package gmsh can be imported."""
     return importlib.util.find_spec("gmsh") is not None
 
 
-def read_by_gmsh(path: Path, holes: Holes = None) -> Domain:
-    """Read a domain from a script, as Gmsh understands it; a `FormatError` says what is wrong."""
+def read_by_gmsh(path: Path) -> PlaneModel:
+    """Curves and surfaces of a script, as Gmsh understands it; a `FormatError` if it does not."""
     script = safe_script(path)
     said = _opened(path, script)
     left_out = {word: line for word, line in script.left_out.items() if word in MENTIONED}
@@ -65,7 +61,7 @@ def read_by_gmsh(path: Path, holes: Holes = None) -> Domain:
             FormatWarning,
             stacklevel=2,
         )
-    return _Model.of(path, said).domain(holes)
+    return _Model.of(path, said).plane()
 
 
 def _opened(path: Path, script: SafeScript) -> dict[str, Any]:
@@ -143,53 +139,36 @@ class _Model:
             )
         return model
 
-    def domain(self, holes: Holes = None) -> Domain:
+    def plane(self) -> PlaneModel:
         if not self.curves:
             raise FormatError(f"{self.path}: it has no curves: there is nothing to mesh")
         inside = {t for s in self.surfaces.values() for t in s["curves_inside"]}
         bounding = {t for s in self.surfaces.values() for t in s["curves"]}
         used = sorted(inside | bounding) if self.surfaces else sorted(self.curves)
-        found = [self.curves[t] for t in used]
-        kept, number = curves_once(found, JOINED * extent_of(found))
-        number_of = dict(zip(used, number, strict=True))
-        curves = [found[k] for k in kept]
-        names = self._names(number_of)
-        samples = [c.point([0, 1] if c.is_straight else _SAMPLES) for c in curves]
-        lines = joined_lines(samples, JOINED * extent_of(curves))
+        curves = CurvesByNumber({t: [self.curves[t]] for t in used})
+        lines = joined_lines(
+            [samples_of(c) for c in curves.curves], JOINED * extent_of(curves.curves)
+        )
         faces = {
-            tag: self._face(tag, [lines[k] for k in sorted({number_of[t] for t in s["curves"]})])
+            tag: self._face(tag, [lines[k] for k in sorted(set(curves.at(s["curves"])))])
             for tag, s in self.surfaces.items()
         }
-        of_surfaces = [(name, members) for dim, _, name, members in self.groups if dim == 2]
-        groups = names_of_groups(self.path, of_surfaces, "surfaces")
-        regions: dict[str, Any] = {}
-        if faces:
-            refuse_holes(holes, "surfaces")
-            holes, regions = seeds_of(faces, groups)
         points = {t for s in self.surfaces.values() for t in s["points_inside"]}
-        return Domain.from_curves(
-            curves,
-            names=names,
-            tags=self._tags(1, names),
-            holes=holes,
-            regions=regions,
-            region_tags=self._tags(2, regions),
-            points=[self.points[t] for t in sorted(points)],
-            join_tolerance=JOINED * extent_of(curves),
+        return PlaneModel(
+            curves.curves,
+            curves.named(self.path, self._groups(1)),
+            self._tags(1),
+            faces,
+            names_of_groups(self.path, self._groups(2), "surfaces"),
+            self._tags(2),
+            [self.points[t] for t in sorted(points)],
         )
 
-    def _names(self, number_of: Mapping[int, int]) -> dict[str, list[int]]:
-        groups = [
-            (name, [number_of[m] for m in members if m in number_of])
-            for dim, _, name, members in self.groups
-            if dim == 1
-        ]
-        return names_of_groups(self.path, groups, "curves")
+    def _groups(self, dimension: int) -> list[tuple[str, list[int]]]:
+        return [(name, members) for dim, _, name, members in self.groups if dim == dimension]
 
-    def _tags(self, dimension: int, names: Container[str]) -> dict[str, int]:
-        return {
-            name: tag for dim, tag, name, _ in self.groups if dim == dimension and name in names
-        }
+    def _tags(self, dimension: int) -> dict[str, int]:
+        return {name: tag for dim, tag, name, _ in self.groups if dim == dimension}
 
     def _face(self, tag: int, lines: list[Floats]) -> Any:
         """A surface as a polygon of samples: what an odd number of its boundaries encloses."""

@@ -20,19 +20,15 @@ from typing import Any
 import numpy as np
 
 from adaptmesh.curves import Arc, Bezier, BSpline, Curve, EllipticArc, Line
-from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.inputs import Holes, refuse_holes
-from adaptmesh.domain.inscribed_polygon import extent_of
-from adaptmesh.domain.surfaces import seeds_of
 from adaptmesh.errors import DomainError, FormatError, FormatWarning
 from adaptmesh.files.whole import read_text
-from adaptmesh.io.domains.drawings.drawing import JOINED
 from adaptmesh.types import Floats
 
 from . import by_gmsh
 from .closed_loops import not_closed, walk_of
 from .expressions import NotReadError
 from .groups import names_of_groups
+from .plane_model import CurvesByNumber, PlaneModel, samples_of
 from .script import CURVES, Definition, Script, script_of
 
 SAME_RADIUS = 1e-6
@@ -43,21 +39,17 @@ SIMILAR_RADIUS = 0.1
 
 _HALF = 4e-15  # radians by which half a turn may be off by rounding
 
-_SAMPLES = np.linspace(0, 1, 33)  # on each curve, for polygons in which seeds are found
 
-
-def read_geo(path: str | os.PathLike[str], holes: Holes = None) -> Domain:
-    """Read a domain from a Gmsh script.
+def read_geo(path: str | os.PathLike[str]) -> PlaneModel:
+    """Read curves and surfaces from a Gmsh script.
 
     Parameters
     ----------
     path : str or path
-    holes : optional
-        As in `Domain`, for a script without surfaces.
 
     Returns
     -------
-    Domain
+    PlaneModel
         Physical groups keep their numbers as tags; those without a name get it as their name, too.
         Curves that bound no surface, and are in none, are left out if there are surfaces.
 
@@ -67,27 +59,27 @@ def read_geo(path: str | os.PathLike[str], holes: Holes = None) -> Domain:
         With the line: a statement that is not understood or describes no plane domain, a number
         that is not defined, a point with z other than 0.
     DomainError
-        If the script is read but its domain cannot be meshed.
+        A surface whose curves cross.
     """
     path = Path(path)
     text = read_text(path)
     try:
-        return _Model.of(script_of(text)).domain(path, holes)
+        return _Model.of(script_of(text)).plane(path)
     except NotReadError as error:
-        return _by_gmsh(path, error, holes)
+        return _by_gmsh(path, error)
     except FormatError as error:
         raise FormatError(f"{path}, {error}") from None
 
 
-def _by_gmsh(path: Path, error: FormatError, holes: Holes) -> Domain:
-    """The domain as Gmsh has it, if it is installed; else the error says that it would help."""
+def _by_gmsh(path: Path, error: FormatError) -> PlaneModel:
+    """The same as Gmsh has it, if it is installed; else the error says that it would help."""
     if not by_gmsh.is_installed():
         raise FormatError(
             f"{path}, {error}. What this reader does not know is opened by Gmsh, if it is there: "
             'pip install "adaptmesh-metric[gmsh]"'
         ) from None
     try:
-        return by_gmsh.read_by_gmsh(path, holes)
+        return by_gmsh.read_by_gmsh(path)
     except FormatError as of_gmsh:
         raise FormatError(f"{path}, {error}. By Gmsh: {of_gmsh}") from None
 
@@ -191,36 +183,23 @@ class _Model:
         self.loops[loop] = numbers
         self.surfaces[d.number] = [loop]
 
-    # -- the domain
+    # -- what they are together
 
-    def domain(self, path: Path, holes: Holes = None) -> Domain:
+    def plane(self, path: Path) -> PlaneModel:
         self._check_flat()
         used = self._used()
         for k in self.inner_curves:
             if k not in self.curves:
                 raise FormatError(f"curve {k} in a surface is not defined")
-        curves = [curve for k in used for curve in self.curves[k]]
-        if not curves:
-            raise DomainError("it has no curves: there is nothing to mesh")
-        owner = np.array([k for k in used for _ in self.curves[k]])
-        by_name = names_of_groups(path, self.curve_names.items(), "curves")
-        names = {name: np.flatnonzero(np.isin(owner, k)) for name, k in by_name.items()}
-        faces = {number: self._face(number) for number in self.surfaces}
-        groups = names_of_groups(path, self.surface_names.items(), "surfaces")
-        regions: dict[str, Any] = {}
-        if faces:
-            refuse_holes(holes, "surfaces")
-            holes, regions = seeds_of(faces, groups)
-        isolated = [self.points[k] for k in self.inner_points if k in self.points]
-        return Domain.from_curves(
-            curves,
-            names={name: numbers for name, numbers in names.items() if len(numbers)},
-            holes=holes,
-            regions=regions,
-            tags={name: tag for name, tag in self.curve_tags.items() if name in names},
-            region_tags={name: tag for name, tag in self.surface_tags.items() if name in regions},
-            points=isolated,
-            join_tolerance=JOINED * extent_of(curves),
+        curves = CurvesByNumber({k: self.curves[k] for k in used})
+        return PlaneModel(
+            curves.curves,
+            curves.named(path, self.curve_names.items()),
+            self.curve_tags,
+            {number: self._face(number) for number in self.surfaces},
+            names_of_groups(path, self.surface_names.items(), "surfaces"),
+            self.surface_tags,
+            [self.points[k] for k in self.inner_points if k in self.points],
         )
 
     def _check_flat(self) -> None:
@@ -257,7 +236,7 @@ class _Model:
         import shapely
 
         curves = [curve for k in self.loops[loop] for curve in self.curves[k]]
-        lines = [np.array([c.start, c.end]) if c.is_straight else c.point(_SAMPLES) for c in curves]
+        lines = [samples_of(curve) for curve in curves]
         walk, stop = walk_of(lines)
         if stop is not None:
             raise not_closed(surface, loop, stop)

@@ -4,7 +4,10 @@ import warnings
 
 import numpy as np
 import pytest
+import shapely
+from reference.transforms import TRANSFORMS
 
+import adaptmesh as am
 from adaptmesh import generate, read_domain
 from adaptmesh.errors import AdaptmeshError, DomainError, FormatError, FormatWarning
 from adaptmesh.io.domains.geo import by_gmsh
@@ -307,3 +310,119 @@ def test_an_arc_with_ends_far_from_one_circle(tmp_path):
     text = "Point(1)={0,0,0}; Point(2)={1,0,0}; Point(3)={0,1.2,0}; Circle(1)={2,1,3};"
     with pytest.raises(FormatError, match=r"1 and 1\.2 from its centre"):
         read_domain(written(tmp_path, text))
+
+
+# ------------------------------------------------------ surfaces that cross, overlap or touch
+
+
+def script_of_polygons(polygons):
+    """A surface for each polygon, in a physical group, with borders and points of its own."""
+    out, n = [], 0
+    for k, (name, corners) in enumerate(polygons, 1):
+        m = len(corners)
+        out += [f"Point({n + i}) = {{{x!r}, {y!r}, 0}};" for i, (x, y) in enumerate(corners, 1)]
+        out += [f"Line({n + i}) = {{{n + i}, {n + i % m + 1}}};" for i in range(1, m + 1)]
+        out += [f"Curve Loop({k}) = {{{n + 1}:{n + m}}}; Plane Surface({k}) = {{{k}}};"]
+        if name:
+            out += [f'Physical Surface("{name}", {10 + k}) = {{{k}}};']
+            out += [f'Physical Curve("side of {name}", {20 + k}) = {{{n + 1}:{n + m}}};']
+        n += m
+    return "\n".join(out)
+
+
+LOW = [(0, 0), (2, 0), (2, 1), (0, 1)]
+TOWER = [(0.5, 1), (1.5, 1), (1.5, 2), (0.5, 2)]  # stands on LOW: T-joints
+ACROSS = [(1.25, 0.5), (3, 0.25), (3, 1.5), (1.5, 1.75)]
+WITHIN = [(0.25, 0.25), (0.75, 0.25), (0.5, 0.75)]
+TABLES = {
+    "touching": [("low", LOW), ("up", TOWER)],
+    "crossing": [("low", LOW), ("across", ACROSS)],
+    "within": [("small", WITHIN), ("low", LOW)],
+    "all": [("small", WITHIN), ("low", LOW), ("up", TOWER), ("across", ACROSS)],
+    "around a hole": [
+        ("a", [(0, 0), (3, 0), (3, 1), (0, 1)]),
+        ("b", [(0, 0.5), (1, 0.5), (1, 3), (0, 3)]),
+        ("c", [(2, 0.5), (3, 0.5), (3, 3), (2, 3)]),
+        ("a", [(0.5, 2), (2.5, 2), (2.5, 3.5), (0.5, 3.5)]),
+    ],
+}
+
+
+@pytest.mark.parametrize("table", TABLES)
+@pytest.mark.parametrize("transform", TRANSFORMS, ids=str)
+def test_surfaces_that_do_not_fit_are_repaired(table, transform, tmp_path):
+    """What several share is the first one's: areas by a polygon library, on the plain figure."""
+    polygons = [(name, transform(corners).tolist()) for name, corners in TABLES[table]]
+    path = written(tmp_path, script_of_polygons(polygons))
+    if table != "within" and transform == TRANSFORMS[0]:  # else borders may miss each other
+        with pytest.raises(DomainError, match=r"let adaptmesh\.repair (do it|give)"):
+            read_domain(path)
+    domain, repairs = am.repair(path)
+    assert repairs
+    areas, taken = {}, shapely.Polygon()
+    for name, corners in TABLES[table]:
+        face = shapely.Polygon(corners)
+        areas[name] = areas.get(name, 0) + face.difference(taken).area
+        taken = taken.union(face)
+    scale = abs(transform.determinant)
+    assert domain.area == pytest.approx(taken.area * scale, rel=1e-5)
+    mesh = generate(domain, 0.3 * transform.scale)
+    assert mesh.validate().ok
+    for name, area in areas.items():
+        found = mesh.areas[mesh.triangles_in(name)].sum()
+        assert found == pytest.approx(area * scale, rel=1e-5), name
+        assert f"side of {name}" in domain.names
+
+
+def test_overlapping_surfaces_of_two_groups_are_refused(tmp_path):
+    """The seed of the one may lie in the other."""
+    path = written(tmp_path, script_of_polygons(TABLES["within"]))
+    with pytest.raises(DomainError, match=r"surfaces 1 and 2 overlap, on an area of 0\.125, and"):
+        read_domain(path)
+    _, repairs = am.repair(path)
+    assert [r.kind for r in repairs] == ["overlapping surfaces"]
+    assert "surfaces 1 and 2 share an area of 0.125; 1 keeps it" in str(repairs)
+    for name in (None, "one"):
+        path = written(tmp_path, script_of_polygons([(name, LOW), (name, WITHIN)]))
+        assert read_domain(path).area == pytest.approx(2)
+        assert not am.repair(path)[1]
+
+
+def test_curved_surfaces_that_overlap_are_repaired_if_their_curves_do_not_cross(tmp_path):
+    discs = "Point(1) = {0, 0, 0};" + "".join(
+        f"Point({k}1) = {{{k}, 0, 0}}; Point({k}2) = {{-{k}, 0, 0}};"
+        f"Circle({k}1) = {{{k}1, 1, {k}2}}; Circle({k}2) = {{{k}2, 1, {k}1}};"
+        f"Curve Loop({k}) = {{{k}1, {k}2}}; Plane Surface({k}) = {{{k}}};"
+        f'Physical Surface("disc {k}") = {{{k}}};'
+        for k in (2, 3)
+    )
+    path = written(tmp_path, discs)
+    with pytest.raises(DomainError, match="surfaces 2 and 3 overlap"):
+        read_domain(path)
+    domain, repairs = am.repair(path)
+    assert len(repairs) == 1
+    mesh = generate(domain, 0.1)
+    assert mesh.areas[mesh.triangles_in("disc 2")].sum() == pytest.approx(4 * np.pi, rel=1e-2)
+    assert mesh.areas[mesh.triangles_in("disc 3")].sum() == pytest.approx(5 * np.pi, rel=1e-2)
+
+
+def test_curves_drawn_twice_are_one(tmp_path):
+    """As Coherence makes them."""
+    left, right = [(0, 0), (1, 0), (1, 1), (0, 1)], [(1, 0), (2, 0), (2, 1), (1, 1)]
+    path = written(tmp_path, script_of_polygons([("a", left), ("b", right)]) + "\nCoherence;")
+    with pytest.warns(FormatWarning, match=r"side of a\|side of b"):
+        domain = read_domain(path)
+    assert domain.area == pytest.approx(2)
+    assert {"side of a", "side of b", "side of a|side of b"} == set(domain.names)
+    assert set(domain.region_names) == {"a", "b"}
+
+
+def test_groups_of_number_zero_get_another(tmp_path):
+    """In Gmsh 0 is a number like others, here that of all that has no name."""
+    text = (
+        script_of_polygons([(None, LOW)])
+        + 'Physical Surface(0) = {1}; Physical Curve("a", 0) = {1};'
+    )
+    domain = read_domain(written(tmp_path, text))
+    assert domain.region_names == {"0": 1}
+    assert domain.names == {"a": 1}

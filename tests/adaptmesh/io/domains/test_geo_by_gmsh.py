@@ -128,7 +128,7 @@ def test_what_our_reader_does_not_know(tmp_path, name, capfd):
     text, area, regions = SCRIPTS[name]
     path = written(tmp_path, text)
     with pytest.raises(FormatError):
-        model._Model.of(script_of(text)).domain(tmp_path)
+        model._Model.of(script_of(text)).plane(tmp_path).domain()
     domain = read_domain(path)
     assert domain.area == pytest.approx(area, rel=1e-9)
     assert set(domain.region_names) == set(regions)
