@@ -231,3 +231,63 @@ def test_periodic_by_rotation(transform):
     mesh = am.generate(domain, carried(transform, 0.15))
     atol = 40 * transform.rounding * transform.scale
     check_periodic(mesh, lambda x: transform(transform.inverse(x) @ turn.T), atol)
+
+
+# Nested rings, lines between holes, sides chosen by place
+
+
+@everywhere
+def test_nested_rings_have_the_areas_of_their_kind(transform):
+    square = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    rings = [transform(half * square) for half in (4, 3, 2, 1)]
+    segments = [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(4) for i in range(4)]
+    curves = [Line(ring[i], ring[(i + 1) % 4]) for ring in rings for i in range(4)]
+    points = np.concatenate(rings)
+    rtol = 20 * transform.rounding + 1e-13
+    for domain, area in (
+        (am.Domain(points, segments), 40),
+        (am.Domain(points, segments, holes=[]), 64),
+        (am.Domain.polygon(rings[0], rings[1:]), 40),
+        (am.Domain.from_curves(curves), 40),
+        (am.Domain.from_curves(curves, holes=[]), 64),
+    ):
+        assert domain.area / abs(transform.determinant) == pytest.approx(area, rel=rtol)
+
+
+@everywhere
+def test_lines_between_holes_and_from_them(transform):
+    points = [(0, 0), (6, 0), (6, 3), (0, 3), (1, 1), (2, 1), (2, 2), (1, 2)]
+    points += [(4, 1), (5, 1), (5, 2), (4, 2), (3, 1.5), (5.2, 0.7)]
+    segments = [(k + i, k + (i + 1) % 4) for k in (0, 4, 8) for i in range(4)]
+    domain = am.Domain(
+        transform(points),
+        [*segments, (6, 12), (12, 11), (9, 13)],
+        holes=transform([(1.5, 1.5), (4.5, 1.5)]),
+        names={"between": [12, 13], "from": [14]},
+    )
+    mesh = am.generate(domain, carried(transform))
+    assert am.validate(mesh) and faults_of_mesh(mesh) == []
+    rtol = 20 * transform.rounding + 1e-13
+    assert mesh.areas.sum() / abs(transform.determinant) == pytest.approx(16, rel=rtol)
+    assert length_before(transform, mesh, "between") == pytest.approx(5**0.5, rel=rtol)
+    assert length_before(transform, mesh, "from") == pytest.approx(0.13**0.5, rel=rtol)
+
+
+@pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
+def test_sides_chosen_by_place_and_direction(transform):
+    ring = [(0, 0), (3, 0), (3, 1), (2, 1), (2, 0.5), (1, 0.5), (1, 1), (0, 1)]
+    origin = transform((0, 0))
+    domain = am.Domain.polygon(
+        transform(ring),
+        names={
+            "up": am.facing(transform((0, 1)) - origin),
+            "left": am.nearest(transform((-0.2, 0.5))),
+            "right": lambda x: transform.inverse(x)[:, 0] > 3 - 1e-6,
+        },
+    ).with_periodic("left", "right")
+    mesh = am.generate(domain, carried(transform))
+    assert am.validate(mesh)
+    rtol = 100 * transform.rounding + 1e-13
+    for name, length in {"up": 3, "left": 1, "right": 1}.items():
+        assert length_before(transform, mesh, name) == pytest.approx(length, rel=rtol)
+    assert len(mesh.periodic_vertices()["left", "right"]) == len(mesh.edges_named("left")) + 1
