@@ -9,18 +9,17 @@ from typing import Any
 import numpy as np
 
 import metrics
-from adaptmesh.boundary.vertex_limit import Budget, Progress
+from adaptmesh.boundary.vertex_limit import Progress, VertexLimit
 from adaptmesh.domain.domain import Domain
 from adaptmesh.generate.generate import MAX_VERTICES, generate, graded_within_budget
-from adaptmesh.generate.placement import Samples
-from adaptmesh.generate.prediction import predict
+from adaptmesh.generate.prediction import predicted
 from adaptmesh.mesh.boundary_polylines import vertices_at
 from adaptmesh.mesh.checks import check_is_mesh
 from adaptmesh.mesh.cleaned import with_edges_once
 from adaptmesh.mesh.mesh import Mesh
 from metrics import ControlSpace
 
-from .edit import Edited, Editing, edited
+from .edit import Edited, edited
 from .freeze import frozen_domain
 from .sub_polylines import is_off
 
@@ -111,10 +110,10 @@ def adapt(
 def _edited(
     mesh: Mesh, domain: Domain, field: ControlSpace, max_vertices: int, progress: Progress | None
 ) -> Edited | None:
-    samples = Samples(field)
-    budget = Budget(max_vertices, predict(domain, samples))
-    budget.check_prediction()
-    return edited(mesh, domain, samples, Editing(), budget, progress or (lambda stage, f: None))
+    prediction = predicted(domain, field)
+    limit = VertexLimit(max_vertices, prediction.count)
+    limit.check_prediction()
+    return edited(mesh, domain, field, prediction, limit, progress or (lambda stage, f: None))
 
 
 def _more_unit(edited: Mesh, again: Mesh, field: ControlSpace) -> Mesh:

@@ -14,27 +14,17 @@ after many steps it still has the count and the quality of a fresh one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
-from adaptmesh._core import FIXED, FREE, Mesher
-from adaptmesh.boundary.edge_lengths import measure_fresh_edges
-from adaptmesh.boundary.vertex_limit import Budget, Progress
+from adaptmesh._core import FIXED, FREE, MetricMesh
+from adaptmesh.boundary.vertex_limit import Progress, VertexLimit
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.side import Lines
 from adaptmesh.errors import DomainError
 from adaptmesh.generate.generate import finished_mesh
-from adaptmesh.generate.optimisation import Optimisation, Settling, optimise, settle
-from adaptmesh.generate.placement import (
-    EdgePlacement,
-    FrontPlacement,
-    Samples,
-    insert_what_was_missed,
-    place_ahead_of_front,
-    place_along_edges,
-)
+from adaptmesh.generate.prediction import Prediction
 from adaptmesh.mesh.boundary_polylines import Chains, find_chains, vertices_at
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.validate.covering import covered_once, simple_border
@@ -44,29 +34,13 @@ from adaptmesh.types import Ints
 from metrics import ControlSpace
 
 from .recut_boundary import had_better_be_anew, recut
-from .select_zone import Fit, Misfits, find_misfits
+from .select_zone import Misfits, find_misfits
 
+TURNS = 3
+"""How often zones are made and filled: what one leaves needs another zone."""
 
-@dataclass(frozen=True)
-class Editing:
-    """What is edited.
-
-    Attributes
-    ----------
-    fit : Fit
-        What may stay.
-    turns : int
-        How often zones are made and filled; what one leaves needs another zone.
-    removal_rounds : int
-        How often a vertex that could not be removed is tried again.
-    most_removed : float
-        If it were more than this share of those that can be, a new mesh is made instead.
-    """
-
-    fit: Fit = field(default_factory=Fit)
-    turns: int = 3
-    removal_rounds: int = 5
-    most_removed: float = 0.75
+MOST_REMOVED = 0.75
+"""If more than this share of the vertices that can be removed were, a new mesh is made instead."""
 
 
 class Edited(NamedTuple):
@@ -79,9 +53,9 @@ class Edited(NamedTuple):
 def edited(
     mesh: Mesh,
     domain: Domain,
-    samples: Samples,
-    options: Editing,
-    budget: Budget,
+    field: ControlSpace,
+    samples: Prediction,
+    limit: VertexLimit,
     report: Progress,
 ) -> Edited | None:
     """The mesh, edited to fit a metric; None if a new one had better be made."""
@@ -91,38 +65,37 @@ def edited(
     if chains is None:
         return None
     held = holders(mesh, lines, chains)
-    mesher = load(mesh, domain, held, samples)
+    core = load(mesh, domain, held, field)
     outline_fits = False
-    for turn in range(options.turns):
+    for turn in range(TURNS):
         if not outline_fits:
             before = chains
-            chains = recut(mesher, before, lines, samples, budget.max_vertices)
+            chains = recut(core, before, lines, field, limit.max_vertices)
             outline_fits = chains is before
-        misfits = measured_misfits(mesher, samples, options.fit)
-        removable = mesher.hold_all_but(misfits.zone)
+        misfits = measured_misfits(core, field)
+        removable = core.hold_all_but(misfits.zone)
         if not removable and not misfits.has_long_edges:
             break
-        if turn == 0 and removable > options.most_removed * np.sum(held == FREE):
+        if turn == 0 and removable > MOST_REMOVED * np.sum(held == FREE):
             return None
-        mesher.remove_free(options.removal_rounds)
-        mesher.swap()
-        fill(mesher, samples, budget, within(report, turn / options.turns, 1 / options.turns))
-    if had_better_be_anew(mesher, chains, lines, samples, budget.max_vertices):
+        monitor = limit.monitor(within(report, turn / TURNS, 1 / TURNS))
+        with limit.explained():
+            core.refill(samples.points, samples.tensors, field, monitor)
+    if had_better_be_anew(core, chains, lines, field, limit.max_vertices):
         return None
-    share = measured_misfits(mesher, samples, options.fit).share
-    mesher.set_constrained(chains.edges, lines.segments[chains.edge_lines])
-    mesher.compact()
-    new = finished_mesh(domain, mesher, mesher.labels())
+    share = measured_misfits(core, field).share
+    arrays = core.finished(chains.edges, lines.segments[chains.edge_lines])
+    new = finished_mesh(domain, arrays, regions=arrays[2])
     if not _is_plane(new):
         return None
     report("done", 1.0)
     return Edited(new, share)
 
 
-def measured_misfits(mesher: Mesher, samples: Samples, fit: Fit) -> Misfits:
+def measured_misfits(core: MetricMesh, field: ControlSpace) -> Misfits:
     """Measure what has changed, and find what does not fit."""
-    measure_fresh_edges(mesher, samples, uncut_below=np.inf)
-    return find_misfits(mesher, samples, fit)
+    core.measure(field)
+    return find_misfits(core, field)
 
 
 def _is_plane(mesh: Mesh) -> bool:
@@ -134,16 +107,6 @@ def _is_plane(mesh: Mesh) -> bool:
     subject = Subject(mesh)
     looks = (positive_triangles, simple_border, covered_once)
     return not any(look(subject).broken for look in looks)
-
-
-def fill(mesher: Mesher, samples: Samples, budget: Budget, report: Progress) -> None:
-    """As `generate` does it, but all that is held stays where it is."""
-    place_ahead_of_front(mesher, samples, FrontPlacement(), budget, report)
-    place_along_edges(mesher, samples, EdgePlacement(), budget, report)
-    if insert_what_was_missed(mesher, samples):
-        place_along_edges(mesher, samples, EdgePlacement(), budget, report)
-    optimise(mesher, samples, Optimisation(), budget, report)
-    settle(mesher, samples, Settling(), budget)
 
 
 def within(report: Progress, start: float, share: float) -> Progress:
@@ -159,10 +122,10 @@ def holders(mesh: Mesh, lines: Lines, chains: Chains) -> Ints:
     return held
 
 
-def load(mesh: Mesh, domain: Domain, held: Ints, metric: ControlSpace) -> Mesher:
-    """The mesh in the hands of a mesher; labels are regions."""
+def load(mesh: Mesh, domain: Domain, held: Ints, metric: ControlSpace) -> MetricMesh:
+    """The mesh in the hands of the core; labels are regions."""
     try:
-        return Mesher(
+        return MetricMesh(
             mesh.points,
             metric(mesh.points),
             mesh.triangles,

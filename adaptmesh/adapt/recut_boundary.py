@@ -21,8 +21,8 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh._core import Mesher
-from adaptmesh.boundary.edge_lengths import measure_edges, sampler_of, straight_lengths
+from adaptmesh._core import MetricMesh
+from adaptmesh.boundary.edge_lengths import measured_edges, straight_lengths
 from adaptmesh.boundary.path_cuts import TURN, RunParts, surroundings_of, unit_chords
 from adaptmesh.domain.periodic import tied_chords
 from adaptmesh.domain.polyline import Surroundings, chords_along
@@ -44,7 +44,7 @@ Rows = dict[int, Floats]
 
 
 def recut(
-    mesher: Mesher, chains: Chains, lines: Lines, field: ControlSpace, most_points: int
+    mesher: MetricMesh, chains: Chains, lines: Lines, field: ControlSpace, most_points: int
 ) -> Chains:
     """Cut the rows anew where their edges are not unit; what cannot be cut stays as it is.
 
@@ -56,7 +56,7 @@ def recut(
 
 
 def had_better_be_anew(
-    mesher: Mesher, chains: Chains, lines: Lines, field: ControlSpace, most_points: int
+    mesher: MetricMesh, chains: Chains, lines: Lines, field: ControlSpace, most_points: int
 ) -> bool:
     """Whether rows that are tied differ, or rows off unit are far from what new ones would be.
 
@@ -202,9 +202,8 @@ class _Plan:
 
     def straight_cuts(self, line: Index, ends: Index) -> list[Floats]:
         """Places that cut stretches of straight lines into unit parts."""
-        sampler = sampler_of(self.points, self.field(self.points), ends)
-        measure_edges(sampler, self.field)
-        cuts, owner = sampler.cut()
+        measured = measured_edges(self.points, self.field(self.points), ends, self.field)
+        cuts, owner = measured.cut()
         start, vector = self.points[ends[:, 0]], np.diff(self.points[ends], axis=1)[:, 0]
         share = np.sum((cuts - start[owner]) * vector[owner], axis=1)
         share /= np.sum(vector[owner] ** 2, axis=1)
@@ -288,7 +287,7 @@ class _Plan:
 
 
 def _carried_out(
-    rows: Rows, mesher: Mesher, chains: Chains, lines: Lines, field: ControlSpace
+    rows: Rows, mesher: MetricMesh, chains: Chains, lines: Lines, field: ControlSpace
 ) -> Chains:
     """Cut the mesh as planned, where that turns no triangle; the rows as they are then.
 

@@ -11,13 +11,12 @@ constrained edge: a new mesh has none of them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 import metrics
-from adaptmesh._core import Mesher
+from adaptmesh._core import MetricMesh
 from adaptmesh.types import Bools, Floats, Ints
 from metrics import ControlSpace
 
@@ -27,26 +26,16 @@ from .sub_polylines import UNIT
 DOUBT = 0.02
 
 
-@dataclass(frozen=True)
-class Fit:
-    """What fits, and how much around a misfit is taken with it.
+# Triangles worse than this do not fit.
+LEAST_QUALITY = 0.35
 
-    Attributes
-    ----------
-    least_quality : float
-        Triangles worse than this are misfits.
-    mean_length : float
-        Where mean lengths are beyond this or its inverse, the mesh is too coarse or too fine.
-    rings : int
-        Rings of neighbours taken with each misfit.
-    spoilt_rings : int
-        Rings around constrained edges that are too short in which a mesh may be too fine.
-    """
+# Where mean lengths are beyond this or its inverse, the mesh is too coarse or too fine.
+MEAN_LENGTH = 1.15
 
-    least_quality: float = 0.35
-    mean_length: float = 1.15
-    rings: int = 2
-    spoilt_rings: int = 3
+# Rings of neighbours taken with what does not fit, and rings around constrained edges that are too
+# short in which a mesh may be too fine.
+RINGS = 2
+SPOILT_RINGS = 3
 
 
 class Misfits(NamedTuple):
@@ -67,10 +56,10 @@ class Misfits(NamedTuple):
     share: float
 
 
-def find_misfits(mesher: Mesher, field: ControlSpace, fit: Fit) -> Misfits:
+def find_misfits(core: MetricMesh, field: ControlSpace) -> Misfits:
     """Measure the edges of a mesh, and find where it does not fit."""
-    points = mesher.points()
-    edges, lengths, is_constrained = mesher.edges()
+    points = core.points()
+    edges, lengths, is_constrained = core.edges()
     n = len(points)
     doubtful = np.zeros(len(edges), bool)
     for bound in UNIT:
@@ -81,14 +70,14 @@ def find_misfits(mesher: Mesher, field: ControlSpace, fit: Fit) -> Misfits:
     is_free = ~_marked(edges[is_constrained], n)
     spoilt = _marked(edges[is_constrained & is_short], n)
     misfit = _marked(edges[is_short | is_long], n)
-    misfit[mesher.corners_below(fit.least_quality)] = True
+    misfit[core.corners_below(LEAST_QUALITY)] = True
     mean = np.exp(_mean_around(_mean_of_edges(np.log(lengths), edges, n), edges))
-    misfit |= mean > fit.mean_length
+    misfit |= mean > MEAN_LENGTH
     misfit &= ~_grown(spoilt, edges, 1)
-    misfit |= (mean < 1 / fit.mean_length) & ~_grown(spoilt, edges, fit.spoilt_rings)
+    misfit |= (mean < 1 / MEAN_LENGTH) & ~_grown(spoilt, edges, SPOILT_RINGS)
     misfit |= _marked(edges[is_short & is_free[edges].any(axis=1)], n)
     share = float(np.mean((is_short | is_long) & ~is_constrained))
-    return Misfits(_grown(misfit, edges, fit.rings), bool(is_long.any()), share)
+    return Misfits(_grown(misfit, edges, RINGS), bool(is_long.any()), share)
 
 
 def _marked(edges: Ints, n: int) -> Bools:

@@ -15,19 +15,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from adaptmesh._core import (
+    AGREEMENT,
+    FINE_DEPTH,
+    LONGEST_CHORD,
+    LONGEST_FINE_CHORD,
+    SHORTEST_CHORD,
+)
 from adaptmesh.domain.paths import Run, points_on
 from adaptmesh.errors import BudgetError
 from adaptmesh.types import Floats, Index
 from metrics import ControlSpace
 from metrics.tensor import lengths
 
-from .edge_lengths import LONGEST_CHORD
-
-# These are explained in core/edge_sampler.hpp, which does the same on straight lines.
-AGREEMENT = 0.05
-SHORTEST_CHORD = 0.05
-FINE_DEPTH = 10
-LONGEST_FINE_CHORD = 4.0
+# Chords of curves are halved no more often; the other bounds are those of the core, which does the
+# same on straight lines: see core/edge_sampler.hpp.
 DEEPEST = 45
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from adaptmesh._core import BoundaryCuts
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.periodic import frozen_pieces, tied_chords, tied_cuts
 from adaptmesh.domain.polyline import Chords
@@ -14,7 +15,7 @@ from adaptmesh.errors import BudgetError
 from adaptmesh.types import Floats, Index, Ints
 from metrics import ControlSpace
 
-from .edge_lengths import measure_edges, sampler_of
+from .edge_lengths import measured_edges
 from .line_rounding import nearest_to_lines
 from .path_cuts import TURN, RunParts, surroundings_of, unit_chords
 from .safe_chains import spans_of
@@ -59,63 +60,26 @@ class Outline:
     piece: Ints
     ties: Index
 
-    def mended(self, made: NDArray[np.bool_]) -> Outline:
-        """What to try next, when these of the cuts (c,) could be made; itself if that is enough.
-
-        A span must have all of its cuts, and is divided at them; of cuts that are tied both are
-        made, or none. Other edges stay longer than unit where there is no room for a cut.
-        """
-        incomplete = np.zeros(len(self.pieces), bool)
-        incomplete[self.piece[~made]] = True
-        hidden = incomplete & self.is_span
-        if hidden.any():
-            return self.divided(hidden)
-        left_out = np.zeros(len(made), bool)
-        for i, j, a, b in self.ties[incomplete[self.ties[:, :2]].any(axis=1)].tolist():
-            mine, images = np.flatnonzero(self.piece == i), np.flatnonzero(self.piece == j)
-            pair = np.stack([mine, images if a == b else images[::-1]])
-            left_out[pair[:, ~made[pair].all(axis=0)]] = True
-        return self.without(left_out) if left_out.any() else self
-
-    def without(self, cuts: NDArray[np.bool_]) -> Outline:
-        """The same without some of its cuts (c,)."""
-        return replace(
-            self,
-            cuts=self.cuts[~cuts],
-            cut_tensors=self.cut_tensors[~cuts],
-            piece=self.piece[~cuts],
-        )
-
-    def divided(self, spans: NDArray[np.bool_]) -> Outline:
-        """The same, but these spans (p,) are divided at all their cuts."""
-        moved = spans[self.piece]
-        number = len(self.points) + np.cumsum(moved) - 1
-        pieces, owners, new_number = [], [], np.cumsum(~spans) - 1
-        for p in np.flatnonzero(spans):
-            a, b = self.pieces[p]
-            row = np.concatenate([[a], number[self.piece == p], [b]])
-            pieces.append(np.stack([row[:-1], row[1:]], axis=1))
-            owners.append(np.full(len(row) - 1, self.piece_segments[p]))
-        gone = {tuple(sorted(pair)) for pair in self.pieces[spans].tolist()}
-        stays = [tuple(sorted(pair)) not in gone for pair in self.segments.tolist()]
-        chords = np.concatenate(pieces).astype(np.int32)
-        owner = np.concatenate(owners)
-        return Outline(
-            np.concatenate([self.points, self.cuts[moved]]),
-            np.concatenate([self.tensors, self.cut_tensors[moved]]),
-            np.concatenate([self.segments[stays], chords]),
-            np.concatenate([self.segment_owners[stays], owner]).astype(np.int32),
-            np.concatenate([self.pieces[~spans], chords]),
-            np.concatenate([self.piece_segments[~spans], owner]).astype(np.int32),
-            np.concatenate([self.is_span[~spans], np.ones(len(chords), bool)]),
-            self.cuts[~moved],
-            self.cut_tensors[~moved],
-            new_number[self.piece[~moved]].astype(np.int32),
-            self.ties,
+    def to_core(self) -> BoundaryCuts:
+        """The same for the core."""
+        piece, image, a, b = self.ties.T
+        ties = np.stack([piece, image, a != b], axis=1).astype(np.int32)
+        return BoundaryCuts(
+            self.points,
+            self.tensors,
+            self.segments,
+            self.segment_owners,
+            self.pieces,
+            self.piece_segments,
+            self.is_span,
+            self.cuts,
+            self.cut_tensors,
+            self.piece,
+            ties,
         )
 
 
-def cut_outline(domain: Domain, field: ControlSpace, most_points: int) -> Outline:
+def cut_boundary(domain: Domain, field: ControlSpace, most_points: int) -> BoundaryCuts:
     """Cut every segment and every curve of the domain into pieces of (nearly) unit metric length.
 
     A segment, or a part of one between points that lie on it, or a run of curves, of length L
@@ -133,10 +97,10 @@ def cut_outline(domain: Domain, field: ControlSpace, most_points: int) -> Outlin
     kept = is_straight[domain.piece_segments]
     pieces = _canonical(vertices, number[domain.pieces[kept]])
     free = np.flatnonzero(~frozen_pieces(domain)[kept])
-    sampler = sampler_of(vertices, tensors, pieces[free])
-    total = measure_edges(sampler, field, most_points).sum()
+    measured = measured_edges(vertices, tensors, pieces[free], field, most_points)
+    total = measured.lengths().sum()
     _check_budget(len(vertices) + total, most_points)
-    cuts, piece = sampler.cut()
+    cuts, piece = measured.cut()
     piece = free[piece].astype(np.int32)
     ties = _ties(domain, kept, vertices, pieces)
     cuts = nearest_to_lines(cuts, vertices[pieces[:, 0]], vertices[pieces[:, 1]], piece)
@@ -156,12 +120,12 @@ def cut_outline(domain: Domain, field: ControlSpace, most_points: int) -> Outlin
         ties,
     )
     if not curved.runs:
-        return straight
+        return straight.to_core()
     around, whole = surroundings_of(domain), RunParts.whole(domain)
     chords = unit_chords(domain, whole, list(whole.u), around, field, most_points)
     chords = tied_chords(chords, curved.runs, domain.periodic, TURN, around)
     _check_budget(len(chords.points) + total, most_points)
-    return _with_spans(straight, domain, chords, spans_of(chords, around), field)
+    return _with_spans(straight, domain, chords, spans_of(chords, around), field).to_core()
 
 
 def _ties(domain: Domain, kept: NDArray[np.bool_], points: Floats, pieces: Ints) -> Index:

@@ -1,12 +1,13 @@
-"""How many vertices a mesh may have, and how far the work on it is."""
+"""How many vertices a mesh may have, and errors that say so."""
 
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
-from adaptmesh._core import MAX_VERTICES
+from adaptmesh._core import MAX_VERTICES, Monitor, TooManyVertices
 from adaptmesh.errors import BudgetError
 
 Progress = Callable[[str, float], None]
@@ -19,7 +20,7 @@ def about(n: float) -> str:
 
 
 @dataclass(frozen=True)
-class Budget:
+class VertexLimit:
     """How many vertices a mesh may have, and is expected to have."""
 
     max_vertices: int
@@ -42,14 +43,18 @@ class Budget:
                 f"{self.max_vertices:,}: ask for larger sizes, or allow more"
             )
 
-    def check(self, n_vertices: int) -> None:
-        """Stop what has become too large although it was not expected to."""
-        if n_vertices > self.max_vertices:
+    def monitor(self, report: Progress) -> Monitor:
+        """What keeps the core within the limit."""
+        return Monitor(self.max_vertices, self.expected, report)
+
+    @contextmanager
+    def explained(self) -> Iterator[None]:
+        """Say what has become too large although it was not expected to."""
+        try:
+            yield
+        except TooManyVertices as error:
+            near = "; many of them near ({:g}, {:g})".format(*error.args) if error.args else ""
             raise BudgetError(
                 f"the mesh needs more than max_vertices = {self.max_vertices:,} vertices (about "
-                f"{self.expected:,} were predicted): ask for larger sizes, or allow more"
-            )
-
-    def progress(self, n_vertices: int) -> float:
-        """How much of the work of placing points is behind us, as a share of all work."""
-        return min(0.7, 0.05 + 0.65 * n_vertices / max(self.expected, 1))
+                f"{self.expected:,} were predicted{near}): ask for larger sizes, or allow more"
+            ) from None

@@ -104,7 +104,7 @@ MaxVertices = Annotated[
 
 def placements(incomplete: str = "") -> list[str]:
     """The names of placements, for checks and for the completion of the shell."""
-    from adaptmesh.generate.placement import PLACEMENTS
+    from adaptmesh.generate.generate import PLACEMENTS
 
     return [name for name in PLACEMENTS if name.startswith(incomplete)]
 

@@ -7,13 +7,6 @@ namespace {
 
 using namespace adaptmesh;
 
-std::vector<PackedTensor> to_tensors(const Tensors& array) {
-    std::vector<PackedTensor> tensors(array.shape(0));
-    for (std::size_t i = 0; i < tensors.size(); ++i)
-        tensors[i] = {array(i, 0), array(i, 1), array(i, 2)};
-    return tensors;
-}
-
 nb::tuple decimate_arrays(const Points& points, const Tensors& tensors, const IndexPairs& ends,
                           const Indices& kind, double share) {
     std::vector<ChainEdge> edges(ends.shape(0));
@@ -26,8 +19,9 @@ nb::tuple decimate_arrays(const Points& points, const Tensors& tensors, const In
     std::vector<std::int64_t> starts{0};
     {
         Decimation decimation(to_points(points), to_tensors(tensors), std::move(edges), share);
+        PythonMonitor monitor;
         nb::gil_scoped_release release;
-        decimation.run(SignalPoll());
+        decimation.run(monitor);
         for (std::size_t e = 0; e < decimation.edges().size(); ++e) {
             const ChainEdge& edge = decimation.edges()[e];
             if (!edge.is_left) continue;
@@ -55,8 +49,9 @@ nb::tuple encounters_arrays(const Points& points_in, const IndexPairs& segments_
     const std::vector<Segment> segments = to_segments(segments_in);
     Encounters encounters(points, segments, tolerance);
     {
+        PythonMonitor monitor;
         nb::gil_scoped_release release;
-        encounters.find(is_unseen.data(), most, SignalPoll());
+        encounters.find(is_unseen.data(), most, monitor);
     }
     return nb::make_tuple(to_pairs(encounters.near()), to_pairs(encounters.crossings()));
 }

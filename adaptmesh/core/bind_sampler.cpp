@@ -1,4 +1,7 @@
 // Measuring and cutting straight lines by the metric, as Python sees it.
+#include <algorithm>
+#include <cmath>
+
 #include "adaptmesh/core/bindings.hpp"
 #include "adaptmesh/core/edge_sampler.hpp"
 
@@ -6,63 +9,63 @@ using namespace adaptmesh;
 
 namespace {
 
-void feed(EdgeSampler& sampler, const Tensors& tensors) {
-    expect_rows(tensors.shape(0), sampler.wanted_count(), "tensors at the wanted points");
-    nb::gil_scoped_release release;
-    sampler.feed([&](std::size_t i) { return tensor_in(tensors, i); });
-}
+// The metric is looked at this closely along lines of the domain, in metric length: a layer that
+// meets the boundary between two looks would be missed there for good.
+constexpr double LONGEST_CHORD = 0.125;
 
-nb::object wanted(const EdgeSampler& sampler) {
-    const std::size_t n = sampler.wanted_count();
-    return to_numpy(sampler.wanted(), {n, 2});
-}
-
-// Straight lines between two points each, to be cut into unit pieces.
-EdgeSampler sampler_of(const Points& starts, const Tensors& start_tensors, const Points& ends,
-                       const Tensors& end_tensors, double longest_chord) {
-    const std::size_t n = starts.shape(0);
-    expect_rows(start_tensors.shape(0), n, "start tensors");
-    expect_rows(ends.shape(0), n, "ends");
-    expect_rows(end_tensors.shape(0), n, "end tensors");
-    EdgeSampler sampler(longest_chord, INFINITY, 0.0);
-    for (std::size_t i = 0; i < n; ++i) {
-        sampler.add({starts(i, 0), starts(i, 1)}, tensor_in(start_tensors, i),
-                    {ends(i, 0), ends(i, 1)}, tensor_in(end_tensors, i));
+void measure_edges(EdgeSampler* self, const Points& points, const Tensors& tensors,
+                   const IndexPairs& edges, const nb::callable& metric, Index max_vertices) {
+    expect_rows(tensors.shape(0), points.shape(0), "tensors");
+    const std::vector<Point> at = to_points(points);
+    const std::vector<Tensor> metric_at = to_tensors(tensors);
+    const double max_chords =
+        std::min(max_vertices * 2 / LONGEST_CHORD, double(EdgeSampler::MAX_CHORDS));
+    EdgeSampler sampler(LONGEST_CHORD, INFINITY, 0.0);
+    for (std::size_t i = 0; i < edges.shape(0); ++i) {
+        const Index a = edges(i, 0), b = edges(i, 1);
+        sampler.add(at[a], metric_at[a], at[b], metric_at[b]);
     }
-    return sampler;
+    {
+        nb::gil_scoped_release release;
+        sampler.measure(metric_of(metric), std::size_t(max_chords));
+    }
+    new (self) EdgeSampler(std::move(sampler));
 }
 
-// Points that cut every edge into unit pieces, and the edge of each.
+nb::object lengths(const EdgeSampler& sampler) {
+    std::vector<double> lengths = sampler.lengths();
+    const std::size_t n = lengths.size();
+    return to_numpy(std::move(lengths), {n});
+}
+
 nb::tuple cut_to_unit(const EdgeSampler& sampler) {
     std::vector<FieldPoint> cuts;
-    std::vector<double> points;
+    std::vector<Point> points;
     std::vector<Index> edges;
     for (Index e = 0; e < sampler.edge_count(); ++e) {
         cuts.clear();
         sampler.cut(e, Index(unit_parts(sampler.lengths()[e])), cuts);
-        for (const FieldPoint& p : cuts) points.push_back(p.at.x), points.push_back(p.at.y);
+        for (const FieldPoint& p : cuts) points.push_back(p.at);
         edges.insert(edges.end(), cuts.size(), e);
     }
     const std::size_t n = edges.size();
-    return nb::make_tuple(to_numpy(std::move(points), {n, 2}), to_numpy(std::move(edges), {n}));
+    return nb::make_tuple(to_numpy(points), to_numpy(std::move(edges), {n}));
 }
 
 }  // namespace
 
 void bind_sampler(nb::module_& m) {
-    nb::class_<EdgeSampler>(m, "EdgeSampler",
-                            "Measures edges by asking for the metric, and cuts them.")
-        .def("wanted", &wanted, "Points (n, 2) where the metric is wanted next; none: done.")
-        .def("feed", &feed, nb::arg("tensors"), "The metric (n, 3) at the wanted points.")
-        .def("lengths",
-             [](const EdgeSampler& s) {
-                 auto lengths = s.lengths();
-                 const std::size_t n = lengths.size();
-                 return to_numpy(std::move(lengths), {n});
-             })
+    m.attr("LONGEST_CHORD") = LONGEST_CHORD;
+    m.attr("AGREEMENT") = EdgeSampler::AGREEMENT;
+    m.attr("SHORTEST_CHORD") = EdgeSampler::SHORTEST_CHORD;
+    m.attr("FINE_DEPTH") = EdgeSampler::FINE_DEPTH;
+    m.attr("LONGEST_FINE_CHORD") = EdgeSampler::LONGEST_FINE_CHORD;
+    nb::class_<EdgeSampler>(m, "MeasuredEdges", "Straight edges, measured with the exact metric.")
+        .def("__init__", &measure_edges, nb::arg("points"), nb::arg("tensors"), nb::arg("edges"),
+             nb::arg("metric"), nb::arg("max_vertices"),
+             "Edges (k, 2) between points with these metrics; if they are longer than so many "
+             "vertices, by far, that is TooManyVertices.")
+        .def("lengths", &lengths)
         .def("cut", &cut_to_unit,
-             "Points that cut the edges into unit pieces, the edge of each, the parts of each "
-             "edge.");
-    m.def("edge_sampler", &sampler_of, nb::arg("starts"), nb::arg("start_tensors"), nb::arg("ends"),
-          nb::arg("end_tensors"), nb::arg("longest_chord"));
+             "Points that cut the edges into unit pieces, and the edge of each.");
 }

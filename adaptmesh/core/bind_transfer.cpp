@@ -55,9 +55,9 @@ nb::object triangle_areas(const Table& corners) {
 
 void make_overlay(Overlay* self, const Locator& older, const Values& old_areas,
                   const Locator& newer, const Values& new_areas) {
-    SignalPoll poll;
+    PythonMonitor monitor;
     nb::gil_scoped_release release;
-    new (self) Overlay(older, old_areas.data(), newer, new_areas.data(), poll);
+    new (self) Overlay(older, old_areas.data(), newer, new_areas.data(), monitor);
 }
 
 nb::tuple pairs(const Overlay& overlay) {
@@ -78,12 +78,12 @@ nb::object moments(const Overlay& overlay, const Table& values, const Nodes& old
     const std::size_t columns = values.shape(1);
     std::vector<double> out(size * columns, 0.0);
     {
-        SignalPoll poll;
+        PythonMonitor monitor;
         nb::gil_scoped_release release;
         const auto compute = [&](auto degree) {
             adaptmesh::Moments<decltype(degree)> all(overlay, values.data(), columns,
                                                      old_nodes.data(), reach, bounds);
-            all.add_to(out.data(), new_nodes.data(), poll);
+            all.add_to(out.data(), new_nodes.data(), monitor);
         };
         switch (new_nodes.shape(1)) {
             case 1:

@@ -12,8 +12,8 @@ nb::tuple delaunay_arrays(const Points& array) {
     std::vector<Index> corners, duplicate_of;
     {
         nb::gil_scoped_release release;
-        SignalPoll poll;
-        const Triangulation mesh = delaunay(points, duplicate_of, poll);
+        PythonMonitor monitor;
+        const Triangulation mesh = delaunay(points, duplicate_of, monitor);
         corners.reserve(3 * mesh.triangles.size());
         for (const Triangle& t : mesh.triangles) {
             if ((t.v[0] | t.v[1] | t.v[2]) >= 0) corners.insert(corners.end(), t.v, t.v + 3);
@@ -34,8 +34,8 @@ nb::tuple triangulate_arrays(const Points& points_in, const IndexPairs& segments
     std::vector<std::uint8_t> is_boundary;
     {
         nb::gil_scoped_release release;
-        SignalPoll poll;
-        const ConstrainedTriangulation out = triangulate(points, segments, options, poll);
+        PythonMonitor monitor;
+        const ConstrainedTriangulation out = triangulate(points, segments, options, monitor);
         for (const Triangle& t : out.triangulation.triangles) {
             corners.insert(corners.end(), t.v, t.v + 3);
             labels.push_back(t.label);
@@ -49,7 +49,7 @@ nb::tuple triangulate_arrays(const Points& points_in, const IndexPairs& segments
     const std::size_t m = labels.size(), q = segment_of.size();
     return nb::make_tuple(to_numpy(std::move(corners), {m, 3}), to_numpy(std::move(labels), {m}),
                           to_numpy(std::move(ends), {q, 2}), to_numpy(std::move(segment_of), {q}),
-                          to_numpy(std::move(is_boundary), {q}).attr("view")("bool"));
+                          to_numpy_flags(std::move(is_boundary)));
 }
 
 // Fault as a Python exception with args (kind, i, j, x, y).

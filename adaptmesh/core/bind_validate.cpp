@@ -12,8 +12,8 @@ nb::tuple sweep_border_arrays(const Points& points_in, const IndexPairs& edges_i
     BorderSweep found;
     {
         nb::gil_scoped_release release;
-        SignalPoll poll;
-        found = sweep_border(points, edges, poll);
+        PythonMonitor monitor;
+        found = sweep_border(points, edges, monitor);
     }
     const std::size_t n = found.layers.size();
     return nb::make_tuple(nb::make_tuple(found.first, found.second),

@@ -6,7 +6,8 @@ NB_MODULE(_core, m) {
     bind_predicates(m);
     bind_triangulate(m);
     bind_sampler(m);
-    bind_mesher(m);
+    bind_generate(m);
+    bind_edit(m);
     bind_transfer(m);
     bind_outlines(m);
     bind_validate(m);

@@ -11,8 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "adaptmesh/core/constrain.hpp"
+#include "adaptmesh/core/metric_field.hpp"
+#include "adaptmesh/core/monitor.hpp"
 #include "adaptmesh/core/point.hpp"
+#include "adaptmesh/core/segment.hpp"
 #include "metrics/core/tensor.hpp"
 
 namespace nb = nanobind;
@@ -20,7 +22,8 @@ namespace nb = nanobind;
 void bind_predicates(nb::module_& m);
 void bind_triangulate(nb::module_& m);
 void bind_sampler(nb::module_& m);
-void bind_mesher(nb::module_& m);
+void bind_generate(nb::module_& m);
+void bind_edit(nb::module_& m);
 void bind_transfer(nb::module_& m);
 void bind_outlines(nb::module_& m);
 void bind_validate(nb::module_& m);
@@ -51,14 +54,27 @@ inline std::vector<adaptmesh::Segment> to_segments(const IndexPairs& array) {
     return segments;
 }
 
-inline metrics::Tensor tensor_in(const Tensors& array, std::size_t i) {
-    return {array(i, 0), array(i, 1), array(i, 2)};
+inline std::vector<metrics::Tensor> to_tensors(const Tensors& array) {
+    static_assert(sizeof(metrics::Tensor) == 3 * sizeof(double));
+    std::vector<metrics::Tensor> tensors(array.shape(0));
+    if (!tensors.empty()) {
+        std::memcpy(tensors.data(), array.data(), tensors.size() * sizeof(metrics::Tensor));
+    }
+    return tensors;
 }
 
-inline void expect_rows(std::size_t got, std::size_t wanted, const char* what) {
-    if (got != wanted) {
+inline std::vector<adaptmesh::Index> to_indices(const Indices& array) {
+    return {array.data(), array.data() + array.shape(0)};
+}
+
+inline std::vector<char> to_flags(const Flags& array) {
+    return {array.data(), array.data() + array.shape(0)};
+}
+
+inline void expect_rows(std::size_t got, std::size_t expected, const char* what) {
+    if (got != expected) {
         throw nb::value_error((std::string(what) + ": " + std::to_string(got) + " rows, expected " +
-                               std::to_string(wanted))
+                               std::to_string(expected))
                                   .c_str());
     }
 }
@@ -71,10 +87,47 @@ nb::object to_numpy(std::vector<T>&& values, std::vector<std::size_t> shape) {
     return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), shape.size(), shape.data(), owner));
 }
 
-// Called often by the long loops of the core (which run without the GIL): lets Ctrl-C through.
-class SignalPoll {
+// An (n, 2) array with a copy of the points.
+inline nb::object to_numpy(const std::vector<adaptmesh::Point>& points) {
+    std::vector<double> flat;
+    flat.reserve(2 * points.size());
+    for (adaptmesh::Point p : points) flat.push_back(p.x), flat.push_back(p.y);
+    return to_numpy(std::move(flat), {points.size(), 2});
+}
+
+// (n,) flags.
+inline nb::object to_numpy_flags(std::vector<std::uint8_t>&& flags) {
+    const std::size_t n = flags.size();
+    return to_numpy(std::move(flags), {n}).attr("view")("bool");
+}
+
+// A metric of Python: a function of an (n, 2) array that returns (n, 3) packed metrics, which have
+// been checked. The core works without the GIL; what the function raises goes through it.
+inline adaptmesh::MetricField metric_of(const nb::callable& function) {
+    return [&function](const std::vector<adaptmesh::Point>& points,
+                       std::vector<metrics::Tensor>& tensors) {
+        nb::gil_scoped_acquire gil;
+        const auto answer = nb::cast<Tensors>(function(to_numpy(points)));
+        expect_rows(answer.shape(0), points.size(), "metrics at points");
+        tensors = to_tensors(answer);
+    };
+}
+
+// Lets Ctrl-C through, and tells a function of Python how far the work is.
+class PythonMonitor : public adaptmesh::Monitor {
   public:
-    void operator()() {
+    PythonMonitor() = default;
+    PythonMonitor(adaptmesh::Index max_vertices, adaptmesh::Index expected_vertices,
+                  nb::callable progress)
+        : Monitor(max_vertices, expected_vertices), progress_(std::move(progress)) {}
+
+    void report(const char* stage, double fraction) override {
+        nb::gil_scoped_acquire gil;
+        if (progress_.is_valid()) progress_(stage, fraction);
+    }
+
+  protected:
+    void stop_if_asked() override {
         const auto now = std::chrono::steady_clock::now();
         if (now - last_ < std::chrono::milliseconds(100)) return;
         last_ = now;
@@ -83,5 +136,6 @@ class SignalPoll {
     }
 
   private:
+    nb::callable progress_;
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };

@@ -23,8 +23,8 @@
 #include <vector>
 
 #include "adaptmesh/core/constrain.hpp"
+#include "adaptmesh/core/monitor.hpp"
 #include "adaptmesh/core/point.hpp"
-#include "adaptmesh/core/poll.hpp"
 #include "adaptmesh/core/predicates.hpp"
 
 namespace adaptmesh {
@@ -60,8 +60,7 @@ class BorderSweeper {
         found_.layers.resize(edges.size(), 0);
     }
 
-    template <typename Poll>
-    BorderSweep run(Poll& poll) {
+    BorderSweep run(Monitor& monitor) {
         // all ends from left to right; at one point, first the edges that end there
         std::vector<std::pair<Index, Index>> events;  // point, edge
         for (Index e = 0; e < Index(edges_.size()); ++e) {
@@ -74,7 +73,7 @@ class BorderSweeper {
         });
         std::vector<Index> ending, starting;
         for (std::size_t i = 0, steps = 0; i < events.size() && found_.first == NONE; ++steps) {
-            if (steps % POLL_EVERY == 0) poll();
+            monitor.poll(steps);
             const Index v = events[i].first;
             if (i > 0 && !is_left_of(points_[events[i - 1].first], points_[v])) {
                 report(events[i - 1].second, events[i].second);  // two points in one place
@@ -175,10 +174,9 @@ class BorderSweeper {
 
 }  // namespace detail
 
-template <typename Poll>
-BorderSweep sweep_border(const std::vector<Point>& points, const std::vector<Segment>& edges,
-                         Poll& poll) {
-    return detail::BorderSweeper(points, edges).run(poll);
+inline BorderSweep sweep_border(const std::vector<Point>& points, const std::vector<Segment>& edges,
+                                Monitor& monitor) {
+    return detail::BorderSweeper(points, edges).run(monitor);
 }
 
 }  // namespace adaptmesh

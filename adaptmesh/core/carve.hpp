@@ -14,8 +14,8 @@
 #include "adaptmesh/core/edge_lookup.hpp"
 #include "adaptmesh/core/fault.hpp"
 #include "adaptmesh/core/locate.hpp"
+#include "adaptmesh/core/monitor.hpp"
 #include "adaptmesh/core/point.hpp"
-#include "adaptmesh/core/poll.hpp"
 #include "adaptmesh/core/triangulation.hpp"
 
 namespace adaptmesh {
@@ -35,14 +35,13 @@ class Carver {
         : mesh_(mesh), points_(points), sub_edges_(sub_edges), lookup_(sub_edges) {}
 
     // Sets the label of every triangle to its component.
-    template <typename Poll>
-    void find_components(Poll& poll) {
+    void find_components(Monitor& monitor) {
         constexpr Index UNSEEN = -1;
         for (Triangle& t : mesh_.triangles) t.label = UNSEEN;
         Index count = 0;
         flood(mesh_.triangle_at(GHOST), count++);
         for (Index t = 0; t < mesh_.triangle_count(); ++t) {
-            if (t % Index(POLL_EVERY) == 0) poll();
+            monitor.poll(t);
             if (mesh_.triangles[t].label == UNSEEN) flood(t, count++);
         }
         is_removed_.assign(count, false);
@@ -290,11 +289,11 @@ class Carver {
 // Labels become 1 + the number of the region seed, 0 where there is none. Vertex numbers stay; a
 // vertex of no triangle has triangle_at NONE. Where two parts of the domain meet in one vertex
 // only, `ball` of that vertex sees one of them. `outside` gets what is removed, if it is given.
-template <typename Poll>
-void carve(Triangulation& mesh, const std::vector<Point>& points, std::vector<SubEdge>& sub_edges,
-           const CarveOptions& options, Poll& poll, Triangulation* outside = nullptr) {
+inline void carve(Triangulation& mesh, const std::vector<Point>& points,
+                  std::vector<SubEdge>& sub_edges, const CarveOptions& options, Monitor& monitor,
+                  Triangulation* outside = nullptr) {
     detail::Carver work(mesh, points, sub_edges);
-    work.find_components(poll);
+    work.find_components(monitor);
     work.check_open_boundary();
     work.place_seeds(options.region_seeds);
     work.remove_holes(options.holes);

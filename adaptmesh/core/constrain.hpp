@@ -8,23 +8,13 @@
 #include "adaptmesh/core/edge_lookup.hpp"
 #include "adaptmesh/core/fault.hpp"
 #include "adaptmesh/core/insert.hpp"
+#include "adaptmesh/core/monitor.hpp"
 #include "adaptmesh/core/point.hpp"
-#include "adaptmesh/core/poll.hpp"
 #include "adaptmesh/core/predicates.hpp"
+#include "adaptmesh/core/segment.hpp"
 #include "adaptmesh/core/triangulation.hpp"
 
 namespace adaptmesh {
-
-struct Segment {
-    Index a, b;
-};
-
-// A locked edge, directed as the segment it is a piece of.
-struct SubEdge {
-    Index a, b;
-    Index segment;
-    bool is_boundary = false;  // has the outside on one side; known after carving
-};
 
 namespace detail {
 
@@ -287,14 +277,13 @@ class Constrainer {
 // is constrained Delaunay. Returns the locked edges, in the order of the segments and along each:
 // one per segment, or more if other vertices lie exactly on it. Faults if segments cross or
 // overlap.
-template <typename Poll>
-std::vector<SubEdge> constrain(Triangulation& mesh, const std::vector<Point>& points,
-                               const std::vector<Segment>& segments, Poll& poll) {
+inline std::vector<SubEdge> constrain(Triangulation& mesh, const std::vector<Point>& points,
+                                      const std::vector<Segment>& segments, Monitor& monitor) {
     detail::Constrainer work(mesh, points, segments);
     work.check();
     std::size_t done = 0;
     for (Index segment : work.lock_present()) {
-        if (++done % POLL_EVERY == 0) poll();
+        monitor.poll(++done);
         work.recover(segment);
     }
     std::stable_sort(work.sub_edges.begin(), work.sub_edges.end(),

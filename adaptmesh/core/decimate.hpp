@@ -15,16 +15,15 @@
 #include <tuple>
 #include <vector>
 
+#include "adaptmesh/core/monitor.hpp"
 #include "adaptmesh/core/point.hpp"
-#include "adaptmesh/core/poll.hpp"
 #include "adaptmesh/core/predicates.hpp"
 #include "metrics/core/boxtree.hpp"
+#include "metrics/core/tensor.hpp"
 
 namespace adaptmesh {
 
-struct PackedTensor {
-    double m11, m12, m22;
-};
+using metrics::Tensor;
 
 // An edge, directed as the first of those that it replaces, and the points that it passes by.
 struct ChainEdge {
@@ -39,8 +38,8 @@ class Decimation {
   public:
     // Edges meet only at points. `share` is how far a point may lie off the edge that replaces its
     // own, as a length in the metric at that point.
-    Decimation(std::vector<Point> points, std::vector<PackedTensor> tensors,
-               std::vector<ChainEdge> edges, double share)
+    Decimation(std::vector<Point> points, std::vector<Tensor> tensors, std::vector<ChainEdge> edges,
+               double share)
         : points_(std::move(points)),
           tensors_(std::move(tensors)),
           edges_(std::move(edges)),
@@ -55,11 +54,10 @@ class Decimation {
         }
     }
 
-    template <typename Poll>
-    void run(Poll&& poll) {
+    void run(Monitor& monitor) {
         for (std::int32_t v = 0; v < std::int32_t(points_.size()); ++v) consider(v);
         for (std::size_t i = 0; !queue_.empty(); ++i) {
-            if (i % POLL_EVERY == 0) poll();
+            monitor.poll(i);
             const Candidate c = queue_.top();
             queue_.pop();
             if (is_current(c) && sweeps_over_nothing(c)) leave_out(c);
@@ -129,17 +127,17 @@ class Decimation {
     }
 
     double length(std::int32_t a, std::int32_t b) const {
-        const PackedTensor &m = tensors_[a], &n = tensors_[b];
+        const Tensor &m = tensors_[a], &n = tensors_[b];
         const double x = points_[b].x - points_[a].x, y = points_[b].y - points_[a].y;
-        return std::sqrt(0.5 * (m.m11 + n.m11) * x * x + (m.m12 + n.m12) * x * y +
-                         0.5 * (m.m22 + n.m22) * y * y);
+        return std::sqrt(0.5 * (m.a + n.a) * x * x + (m.b + n.b) * x * y +
+                         0.5 * (m.c + n.c) * y * y);
     }
 
     // Of a point from the edge ab, in the metric at the point.
     double squared_offset(std::int32_t p, std::int32_t a, std::int32_t b) const {
-        const PackedTensor& m = tensors_[p];
+        const Tensor& m = tensors_[p];
         const auto dot = [&m](Point u, Point w) {
-            return m.m11 * u.x * w.x + m.m12 * (u.x * w.y + u.y * w.x) + m.m22 * u.y * w.y;
+            return m.a * u.x * w.x + m.b * (u.x * w.y + u.y * w.x) + m.c * u.y * w.y;
         };
         const Point u{points_[b].x - points_[a].x, points_[b].y - points_[a].y};
         const Point w{points_[p].x - points_[a].x, points_[p].y - points_[a].y};
@@ -190,7 +188,7 @@ class Decimation {
     }
 
     std::vector<Point> points_;
-    std::vector<PackedTensor> tensors_;
+    std::vector<Tensor> tensors_;
     std::vector<ChainEdge> edges_;
     double share_;
     metrics::BoxTree tree_;

@@ -11,7 +11,7 @@
 #include "adaptmesh/core/hilbert.hpp"
 #include "adaptmesh/core/insert.hpp"
 #include "adaptmesh/core/locate.hpp"
-#include "adaptmesh/core/poll.hpp"
+#include "adaptmesh/core/monitor.hpp"
 #include "adaptmesh/core/triangulation.hpp"
 
 namespace adaptmesh {
@@ -91,9 +91,8 @@ void coarse_to_fine(Index count, const Visit& visit) {
 //
 // Incremental insertion, Lawson's flips (Lawson 1977), exact predicates; of points on one circle
 // any triangulation counts as Delaunay.
-template <typename Poll>
-Triangulation delaunay(const std::vector<Point>& points, std::vector<Index>& duplicate_of,
-                       Poll& poll) {
+inline Triangulation delaunay(const std::vector<Point>& points, std::vector<Index>& duplicate_of,
+                              Monitor& monitor) {
     detail::check_points(points);
     // All work is on copies of the points in the order of the curve: near in the plane is near in
     // memory. The vertices are renamed at the end.
@@ -115,7 +114,7 @@ Triangulation delaunay(const std::vector<Point>& points, std::vector<Index>& dup
     std::size_t done = 0;
     detail::coarse_to_fine(count, [&, a = a, b = b, c = c](Index v) {
         if (v == a || v == b || v == c) return;
-        if (++done % POLL_EVERY == 0) poll();
+        monitor.poll(++done);
         const Location where = locate(mesh, at, sorted[v], home);
         if (where.where == Where::on_vertex) {
             doubles.push_back({v, mesh.triangles[where.triangle].v[where.slot]});

@@ -1,13 +1,13 @@
 // How long is an edge, and where are its unit points, when the metric is known only by asking?
 //
-// The metric lives in Python and answers for whole arrays of points. So the sampler *asks in
-// rounds*: it hands out the midpoints of all chords it is not sure of, is fed the metrics there,
-// splits the chords that still disagree with their halves, and so on until none is left. Then every
-// edge is a row of pieces, each with its length and the speed |e|_M at both ends.
+// The metric may be a function of Python, which answers fastest for whole arrays of points. So the
+// sampler *asks in rounds*: it asks for the metric at the midpoints of all chords it is not sure
+// of, splits the chords that still disagree with their halves, and so on until none is left. Then
+// every edge is a row of pieces, each with its length and the speed |e|_M at both ends.
 //
 //        A-----------------B      chord: length by its ends, l(A, B)
-//        A--------M--------B      fed with M: l(A, M) + l(M, B); both agree -> two pieces,
-//                                 else two chords, asked about in the next round
+//        A--------M--------B      with the metric at M: l(A, M) + l(M, B); if both agree -> two
+//                                 pieces, else two chords, asked about in the next round
 //
 // A length by its ends takes the geometric mean of the metrics there for the metric half way. That
 // of two thin ellipses turned against each other is nearly round, and lengths in it are far too
@@ -18,15 +18,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
+#include "adaptmesh/core/metric_field.hpp"
+#include "adaptmesh/core/monitor.hpp"
 #include "adaptmesh/core/point.hpp"
 #include "adaptmesh/core/triangulation.hpp"
 #include "metrics/core/tensor.hpp"
 
 namespace adaptmesh {
-
-using metrics::Tensor;
 
 // How many parts bring an edge of this length nearest to unit: n parts up to sqrt(n (n + 1)), where
 // n parts are as much too long as n + 1 are too short. Ties by rounding go to fewer.
@@ -43,6 +44,8 @@ struct FieldPoint {
 
 class EdgeSampler {
   public:
+    // More chords at once would be a mesh of millions of vertices, and a gigabyte of memory.
+    static constexpr std::size_t MAX_CHORDS = 8'000'000;
     // A chord is trusted when its own length and that of its halves agree to this share (the
     // halves are then right to about a tenth of it), if ...
     static constexpr double AGREEMENT = 0.05;
@@ -68,7 +71,7 @@ class EdgeSampler {
     // Forgets all edges, but keeps their memory.
     void clear() {
         edges_.clear(), lengths_.clear();
-        chords_.clear(), asked_.clear();
+        chords_.clear();
         pieces_.clear(), first_.clear();
     }
 
@@ -84,34 +87,20 @@ class EdgeSampler {
 
     Index edge_count() const { return Index(edges_.size()); }
 
-    // Where the metric is wanted next; empty when all edges are measured.
-    std::vector<double> wanted() const {
-        std::vector<double> out;
-        out.reserve(2 * chords_.size());
-        for (const Chord& c : chords_) {
-            const Point p = point(c.edge, 0.5 * (c.from.t + c.to.t));
-            out.push_back(p.x), out.push_back(p.y);
+    // Measures all edges. More chords than `max_chords` in one round are TooManyVertices.
+    void measure(const MetricField& metric, std::size_t max_chords = MAX_CHORDS) {
+        std::vector<Chord> chords;
+        std::vector<Point> midpoints;
+        while (!chords_.empty()) {
+            chords.swap(chords_);
+            chords_.clear();
+            midpoints.clear();
+            for (const Chord& c : chords)
+                midpoints.push_back(point(c.edge, 0.5 * (c.from.t + c.to.t)));
+            if (chords.size() > max_chords) throw TooManyVertices(midpoints[chords.size() / 2]);
+            split(chords, evaluate(metric, midpoints));
         }
-        return out;
-    }
-    std::size_t wanted_count() const { return chords_.size(); }
-
-    // The metrics at the wanted points, in their order.
-    template <typename TensorAt>
-    void feed(TensorAt&& tensor_at) {
-        asked_.swap(chords_);
-        chords_.clear();
-        for (std::size_t i = 0; i < asked_.size();) {
-            const Index edge = asked_[i].edge;
-            double estimate = lengths_[edge];
-            halves_.clear();
-            for (; i < asked_.size() && asked_[i].edge == edge; ++i) {  // its chords are in a row
-                halves_.push_back(halve(asked_[i], tensor_at(i)));
-                estimate += halves_.back().length;
-            }
-            for (const Halved& h : halves_) settle(h, estimate);
-        }
-        if (chords_.empty()) finish();
+        finish();
     }
 
     // Metric length of each edge, once all are measured.
@@ -231,8 +220,23 @@ class EdgeSampler {
                 (agree && halves <= longest) || halves <= SHORTEST_CHORD || c.depth >= DEEPEST};
     }
 
+    // Halves chords, those of each edge in a row, with the metrics at their midpoints.
+    void split(const std::vector<Chord>& chords, const std::vector<Tensor>& middles) {
+        std::vector<Halved> halves;  // of the edge at hand
+        for (std::size_t i = 0; i < chords.size();) {
+            const Index edge = chords[i].edge;
+            double estimate = lengths_[edge];
+            halves.clear();
+            for (; i < chords.size() && chords[i].edge == edge; ++i) {
+                halves.push_back(halve(chords[i], middles[i]));
+                estimate += halves.back().length;
+            }
+            for (const Halved& h : halves) keep(h, estimate);
+        }
+    }
+
     // Keeps the halves, or has them asked about; `estimate` is what the edge is now thought to be.
-    void settle(const Halved& h, double estimate) {
+    void keep(const Halved& h, double estimate) {
         const Index edge = h.left.edge;
         const bool measured_enough = h.is_trusted || estimate > longest_edge_;
         if (measured_enough) {
@@ -257,9 +261,9 @@ class EdgeSampler {
         for (const Chord& p : pieces_) ++first_[p.edge + 1];
         for (std::size_t e = 0; e < edges_.size(); ++e) first_[e + 1] += first_[e];
         std::vector<Index> free(first_.begin(), first_.end() - 1);
-        asked_.resize(pieces_.size());
-        for (const Chord& p : pieces_) asked_[free[p.edge]++] = p;
-        pieces_.swap(asked_);
+        std::vector<Chord> sorted(pieces_.size());
+        for (const Chord& p : pieces_) sorted[free[p.edge]++] = p;
+        pieces_.swap(sorted);
         for (std::size_t e = 0; e < edges_.size(); ++e) {
             std::sort(pieces_.begin() + first_[e], pieces_.begin() + first_[e + 1],
                       [](const Chord& p, const Chord& q) { return p.from.t < q.from.t; });
@@ -285,11 +289,9 @@ class EdgeSampler {
     double uncut_below_;
     std::vector<Edge> edges_;
     std::vector<Chord> chords_;    // to be asked about
-    std::vector<Chord> asked_;     // those of the last round; scratch at the end
     std::vector<Chord> pieces_;    // trusted
     std::vector<Index> first_;     // of each edge, in pieces_
     std::vector<double> lengths_;  // of what is trusted
-    std::vector<Halved> halves_;   // of the edge at hand
 };
 
 }  // namespace adaptmesh

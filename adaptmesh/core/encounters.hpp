@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "adaptmesh/core/constrain.hpp"
+#include "adaptmesh/core/monitor.hpp"
 #include "adaptmesh/core/point.hpp"
-#include "adaptmesh/core/poll.hpp"
 #include "adaptmesh/core/predicates.hpp"
 #include "metrics/core/boxtree.hpp"
 
@@ -30,15 +30,14 @@ class Encounters {
         : points_(points), segments_(segments), tolerance_(tolerance) {}
 
     // Compares pairs of segments of which one at least is unseen; stops after `most` crossings.
-    template <typename Poll>
-    void find(const bool* is_unseen, std::size_t most, Poll&& poll) {
+    void find(const bool* is_unseen, std::size_t most, Monitor& monitor) {
         std::vector<metrics::Box> boxes;
         boxes.reserve(segments_.size());
         for (const Segment& s : segments_) boxes.push_back(box_around(s));
         const metrics::BoxTree tree(boxes);
         for (Index i = 0; i < Index(segments_.size()) && crossings_.size() <= most; ++i) {
             if (!is_unseen[i]) continue;
-            if (i % POLL_EVERY == 0) poll();
+            monitor.poll(i);
             tree.matching([&](const metrics::Box& box) { return box.meets(boxes[i]); },
                           [&](Index j) {
                               if (i < j || (i != j && !is_unseen[j])) compare(i, j, boxes);

@@ -8,8 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "adaptmesh/core/constrain.hpp"
 #include "adaptmesh/core/edge_lookup.hpp"
+#include "adaptmesh/core/metric_mesh.hpp"
+#include "adaptmesh/core/segment.hpp"
 #include "adaptmesh/core/triangulation.hpp"
 
 namespace adaptmesh {
@@ -41,9 +42,13 @@ inline std::vector<EdgeSide> sides_of(const Triangulation& topology) {
 }
 
 // Throws std::invalid_argument where triangles are not a mesh. `locked` are constrained edges.
-inline Triangulation load(Index n_vertices, const std::vector<std::array<Index, 3>>& triangles,
-                          const std::vector<Index>& labels, const std::vector<Segment>& locked) {
-    Triangulation topology;
+inline MetricMesh load(std::vector<Vertex> vertices,
+                       const std::vector<std::array<Index, 3>>& triangles,
+                       const std::vector<Index>& labels, const std::vector<Segment>& locked) {
+    const Index n_vertices = Index(vertices.size());
+    MetricMesh mesh;
+    mesh.vertices = std::move(vertices);
+    Triangulation& topology = mesh.topology;
     topology.reserve(n_vertices);
     for (Index v = 0; v < n_vertices; ++v) topology.add_vertex();
     for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -69,7 +74,8 @@ inline Triangulation load(Index n_vertices, const std::vector<std::array<Index, 
         if (is_end[s.low] && is_end[s.high] && lookup.find(s.low, s.high) != NONE)
             topology.lock({triangle_of(s.code), slot_of(s.code)});
     }
-    return topology;
+    mesh.take_fans_apart();
+    return mesh;
 }
 
 }  // namespace adaptmesh

@@ -14,6 +14,7 @@
 #include "adaptmesh/core/fans.hpp"
 #include "adaptmesh/core/point.hpp"
 #include "adaptmesh/core/predicates.hpp"
+#include "adaptmesh/core/segment.hpp"
 #include "adaptmesh/core/triangulation.hpp"
 #include "metrics/core/tensor.hpp"
 
@@ -62,7 +63,8 @@ class MetricMesh {
     Triangulation topology;
     std::vector<Vertex> vertices;
     Corrections corrections;
-    std::vector<Index> stale;  // vertices whose metric is interpolated and wants to be evaluated
+    std::vector<Index> interpolated;   // vertices whose metric is still to be evaluated
+    std::vector<SubEdge> constrained;  // edges on the lines of the domain, when these have been cut
     Fans fans;
 
     // Gives each part of the mesh its own vertex where parts touch in one; `compact` undoes it.
@@ -83,8 +85,8 @@ class MetricMesh {
     // Puts a vertex elsewhere in its ball, with the metric interpolated there.
     void move_vertex(Index v, const Vertex& moved, const std::vector<Place>& ball) {
         vertices[v] = moved;
-        stale.push_back(v);
-        for (Place p : ball) topology.triangles[p.triangle].fresh = CHANGED;
+        interpolated.push_back(v);
+        for (Place p : ball) topology.triangles[p.triangle].pending = CHANGED;
     }
 
     const Point& at(Index v) const { return vertices[v].at; }
@@ -128,8 +130,8 @@ class MetricMesh {
     }
 
     // Drops dead triangles and the vertices that are left without any, and makes copies one with
-    // their originals; returns the new number of each vertex, NONE for the dropped.
-    std::vector<Index> compact() {
+    // their originals; numbers the rest in their order.
+    void compact() {
         drop_dead_triangles();
         std::vector<Index> original(vertices.size());
         std::iota(original.begin(), original.end(), 0);
@@ -152,7 +154,7 @@ class MetricMesh {
         fans = Fans();
         vertices.resize(kept);
         topology.drop_vertices(name, kept);
-        return name;
+        for (SubEdge& e : constrained) e.a = name[e.a], e.b = name[e.b];
     }
 
     double euclidean_area(Index t) const {

@@ -250,10 +250,9 @@ class Moments {
           bounds_(bounds),
           local_(columns) {}
 
-    template <typename Poll>
-    void add_to(double* out, const std::int32_t* new_nodes, Poll& poll) {
+    void add_to(double* out, const std::int32_t* new_nodes, Monitor& monitor) {
         for (std::int32_t k = 0; k < overlay_.new_mesh().triangle_count(); ++k) {
-            if (k % 1024 == 0) poll();
+            monitor.poll(k);
             add_common_parts(k);
             if (overlay_.is_at_border(k)) extend(k);
             local_.store(out, new_nodes + std::size_t(k) * N);

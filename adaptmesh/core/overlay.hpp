@@ -24,9 +24,8 @@ class Overlay {
     using Index = metrics::Index;
 
     // The meshes, which have to outlive this, and the areas of their triangles.
-    template <typename Poll>
     Overlay(const Locator& older, const double* old_areas, const Locator& newer,
-            const double* new_areas, Poll& poll)
+            const double* new_areas, Monitor& monitor)
         : old_(older),
           new_(newer),
           old_areas_(old_areas, old_areas + older.triangle_count()),
@@ -34,7 +33,7 @@ class Overlay {
           found_for_(older.triangle_count(), -1) {
         first_.push_back(0);
         for (Index k = 0; k < new_.triangle_count(); ++k) {
-            if (k % 1024 == 0) poll();
+            monitor.poll(k);
             find_old_under(k);
             first_.push_back(olds_.size());
         }

@@ -40,7 +40,7 @@ class PointInserter {
             const Index v = mesh_.add_vertex(p);
             const auto added = mesh_.topology.split_triangle(place.triangle, v);
             around_.assign({place.triangle, added[0], added[1]});
-            legalise_around(mesh_, v, around_, DelaunayCriterion{});
+            legalise_around(mesh_, v, around_);
         }
         return Outcome::inserted;
     }

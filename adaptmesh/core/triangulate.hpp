@@ -20,19 +20,18 @@ struct ConstrainedTriangulation {
 // The domain is what the segments enclose, without holes. Vertex numbers are those of the points.
 // Anything wrong with the input is a Fault; nothing is repaired. `outside` gets the rest of the
 // triangulation, with the ghosts, if it is given.
-template <typename Poll>
-ConstrainedTriangulation triangulate(const std::vector<Point>& points,
-                                     const std::vector<Segment>& segments,
-                                     const CarveOptions& options, Poll& poll,
-                                     Triangulation* outside = nullptr) {
+inline ConstrainedTriangulation triangulate(const std::vector<Point>& points,
+                                            const std::vector<Segment>& segments,
+                                            const CarveOptions& options, Monitor& monitor,
+                                            Triangulation* outside = nullptr) {
     ConstrainedTriangulation out;
     std::vector<Index> duplicate_of;
-    out.triangulation = delaunay(points, duplicate_of, poll);
+    out.triangulation = delaunay(points, duplicate_of, monitor);
     for (Index i = 0; i < Index(points.size()); ++i) {
         if (duplicate_of[i] != i) throw Fault("duplicate_points", duplicate_of[i], i, points[i]);
     }
-    out.sub_edges = constrain(out.triangulation, points, segments, poll);
-    carve(out.triangulation, points, out.sub_edges, options, poll, outside);
+    out.sub_edges = constrain(out.triangulation, points, segments, monitor);
+    carve(out.triangulation, points, out.sub_edges, options, monitor, outside);
     return out;
 }
 

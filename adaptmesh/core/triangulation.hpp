@@ -54,9 +54,10 @@ constexpr bool is_locked(Index code) {
 
 // 2^28 triangles: what an edge code of 31 bits can number.
 constexpr Index MAX_TRIANGLES = Index(1) << 28;
+constexpr Index MAX_VERTICES = MAX_TRIANGLES / 2;
 
-// Every change of a triangle sets all bits of its `fresh`; who has looked at it clears its own.
-enum Fresh : std::uint32_t {
+// Every change of a triangle sets all bits of its `pending`; who has looked at it clears its own.
+enum Pending : std::uint32_t {
     TO_MEASURE = 1,
     TO_IMPROVE = 2,
     TO_ADVANCE = 4,
@@ -68,9 +69,9 @@ enum Fresh : std::uint32_t {
 struct Triangle {
     Index v[3];
     Index n[3];
-    std::uint32_t stamp : 27;  // visit mark of searches, see Triangulation::new_stamp
-    std::uint32_t fresh : 5;   // who has not yet seen its last change, see Fresh
-    Index label;               // region, or a mark of the algorithm at work
+    std::uint32_t stamp : 27;   // visit mark of searches, see Triangulation::new_stamp
+    std::uint32_t pending : 5;  // who has not yet seen its last change, see Pending
+    Index label;                // region, or a mark of the algorithm at work
 
     int slot_of_vertex(Index vertex) const { return v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2; }
 };
@@ -146,7 +147,7 @@ class Triangulation {
 
         T.v[0] = a, T.v[1] = b, T.v[2] = d;
         U.v[0] = d, U.v[1] = c, U.v[2] = a;
-        T.fresh = U.fresh = CHANGED;
+        T.pending = U.pending = CHANGED;
         link(t, 0, bd);
         link(t, 2, ab);
         link(u, 0, ca);
@@ -170,7 +171,7 @@ class Triangulation {
         const Index t2 = add_triangle(p, a, b);
         Triangle& T = triangles[t];
         T.v[0] = p;
-        T.fresh = CHANGED;
+        T.pending = CHANGED;
         triangles[t1].label = triangles[t2].label = old.label;
         link(t1, 0, old.n[1]);
         link(t2, 0, old.n[2]);
@@ -201,7 +202,7 @@ class Triangulation {
         Triangle& T = triangles[t];
         T.v[0] = a, T.v[1] = b, T.v[2] = p;
         T.n[0] = NONE;
-        T.fresh = CHANGED;
+        T.pending = CHANGED;
         triangles[t2].label = old.label;
         link(t, 2, old.n[prev(e)]);
         link(t2, 1, old.n[next(e)]);
@@ -216,7 +217,7 @@ class Triangulation {
         const Index u2 = add_triangle(d, p, b);
         Triangle& U = triangles[u];
         U.v[0] = d, U.v[1] = c, U.v[2] = p;
-        U.fresh = CHANGED;
+        U.pending = CHANGED;
         triangles[u2].label = far.label;
         link(u, 2, far.n[prev(f)]);
         link(u2, 1, far.n[next(f)]);
@@ -243,7 +244,7 @@ class Triangulation {
             const bool is_next = T.v[next(i)] == to;
             if (!is_next && T.v[prev(i)] != to) {
                 T.v[i] = to;
-                T.fresh = CHANGED;
+                T.pending = CHANGED;
                 continue;
             }
             const Index opposite_from = T.n[i];

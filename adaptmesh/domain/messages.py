@@ -9,8 +9,14 @@ from .inputs import OR_REPAIR
 def fault_text(domain: DomainData, kind: str, i: int, j: int, x: float, y: float) -> str:
     """What is wrong, where, and what to do, from a fault that the core found."""
     place = f"({x:.17g}, {y:.17g})"
-    if kind in ("crossing_segments", "overlapping_segments"):
+    if kind in ("crossing_segments", "overlapping_segments", "lines_too_near"):
         a, b = segment_text(domain, i), segment_text(domain, j)
+        if kind == "lines_too_near":
+            return (
+                f"{a} and {b} come so near each other at {place} that vertices on them cannot be "
+                "told apart (coordinates are rounded): move them apart, make them one, or move the "
+                "origin near them"
+            )
         if kind == "crossing_segments":
             return f"{a} and {b} cross at {place}: put a point there and divide both, {OR_REPAIR}"
         return (

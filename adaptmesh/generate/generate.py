@@ -8,32 +8,24 @@ from typing import Any
 import numpy as np
 
 import metrics
-from adaptmesh._core import Fault, Mesher
-from adaptmesh.boundary.discretise import Outline, cut_outline
-from adaptmesh.boundary.messages import too_near_text
-from adaptmesh.boundary.vertex_limit import Budget, Progress
+from adaptmesh._core import BoundaryCuts, Fault, Monitor, Placement
+from adaptmesh._core import generate as generate_in_core
+from adaptmesh.boundary.discretise import cut_boundary
+from adaptmesh.boundary.vertex_limit import Progress, VertexLimit
 from adaptmesh.domain.background import register_mesher
 from adaptmesh.domain.domain import Domain
+from adaptmesh.domain.messages import fault_text
 from adaptmesh.errors import DomainError, MetricError
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.types import Ints
+from adaptmesh.types import Floats, Ints
 from metrics import ControlSpace
 
-from .optimisation import Optimisation, Settling, optimise, settle
-from .placement import (
-    PLACEMENTS,
-    EdgePlacement,
-    FrontPlacement,
-    Samples,
-    insert_what_was_missed,
-    place_ahead_of_front,
-    place_along_edges,
-)
-from .prediction import check_is_domain, predict
+from .prediction import Prediction, check_is_domain, predict, predicted
 
-# The points of the domain are triangulated for the Euclidean plane; under a slanted and strongly
-# anisotropic metric it can take many passes of swaps until that is metric Delaunay. Most need two.
-OUTLINE_SWAPS = 200
+MeshArrays = tuple[Floats, Ints, Ints, Ints, Ints]
+"""Points, triangles, the label of each, constrained edges, the segment of each."""
+
+PLACEMENTS = {"front": Placement.front, "edges": Placement.edges}
 
 MAX_VERTICES = 5_000_000
 """The largest mesh that is made if nothing else is said."""
@@ -94,24 +86,17 @@ def generate(
         field = graded_within_budget(domain, field, gradation, max_vertices)
 
     report("predicting the size", 0.0)
-    samples = Samples(field)
-    budget = Budget(max_vertices, predict(domain, samples))
-    budget.check_prediction()
+    prediction = predicted(domain, field)
+    limit = VertexLimit(max_vertices, prediction.count)
+    limit.check_prediction()
     report("cutting the boundary", 0.02)
-    outline = cut_outline(domain, field, budget.max_vertices)
-    mesher = triangulate_outline(domain, outline)
-    report("placing points", 0.05)
-    if placement == "front":
-        place_ahead_of_front(mesher, field, FrontPlacement(), budget, report)
-    place_along_edges(mesher, field, EdgePlacement(), budget, report)
-    if insert_what_was_missed(mesher, samples):
-        place_along_edges(mesher, field, EdgePlacement(), budget, report)
-    optimise(mesher, field, Optimisation(), budget, report)
-    report("settling", 0.97)
-    settle(mesher, field, Settling(), budget)
-    mesher.compact()
+    boundary = cut_boundary(domain, field, limit.max_vertices)
+    with limit.explained():
+        arrays = _meshed(
+            domain, boundary, prediction, PLACEMENTS[placement], field, limit.monitor(report)
+        )
     report("done", 1.0)
-    return finished_mesh(domain, mesher, domain.region_of_label(mesher.labels()))
+    return finished_mesh(domain, arrays, domain.region_of_label(arrays[2]))
 
 
 def graded_within_budget(
@@ -126,51 +111,44 @@ def graded_within_budget(
             f"gradation={gradation!r}: expected a finite factor above 1 from one unit edge to the "
             "next; 1.5 is usual"
         )
-    Budget(max_vertices, predict(domain, field)).check_prediction()
+    VertexLimit(max_vertices, predict(domain, field)).check_prediction()
     return field.graded(domain, gradation)
 
 
-def triangulate_outline(domain: Domain, outline: Outline) -> Mesher:
-    """The constrained triangulation of the outline's points, then of its cuts: metric Delaunay.
-
-    A cut of a curve is off the chord that it divides, and can be hidden from it by triangles that
-    lie between; any cut can be rounded onto or beyond what comes very near. `Outline.mended` says
-    what is tried then.
-    """
-    while True:
-        try:
-            mesher = Mesher(
-                outline.points,
-                outline.tensors,
-                outline.segments,
-                domain.holes,
-                domain.seeds,
-                domain.nesting,
-            )
-        except Fault as fault:
-            raise DomainError(too_near_text(domain, outline, *fault.args)) from None
-        mesher.swap(most_passes=OUTLINE_SWAPS)
-        made = mesher.cut_outline(
-            outline.pieces,
-            outline.piece_segments,
-            outline.cuts,
-            outline.cut_tensors,
-            outline.piece,
+def _meshed(
+    domain: Domain,
+    boundary: BoundaryCuts,
+    samples: Prediction,
+    placement: Placement,
+    field: ControlSpace,
+    monitor: Monitor,
+) -> MeshArrays:
+    """The stages after the boundary is cut: see core/generate.hpp."""
+    try:
+        return generate_in_core(
+            boundary,
+            domain.holes,
+            domain.seeds,
+            domain.nesting,
+            samples.points,
+            samples.tensors,
+            placement,
+            field,
+            monitor,
         )
-        mended = outline.mended(made)
-        if mended is outline:
-            return mesher
-        outline = mended
+    except Fault as fault:
+        raise DomainError(fault_text(domain, *fault.args)) from None
 
 
-def finished_mesh(domain: Domain, mesher: Mesher, regions: Ints) -> Mesh:
-    edges, segment = mesher.constrained_edges()
+def finished_mesh(domain: Domain, arrays: MeshArrays, regions: Ints) -> Mesh:
+    """A mesh as the core made it, with the names of its domain."""
+    points, triangles, _, edges, segments = arrays
     return Mesh(
-        points=mesher.points(),
-        triangles=mesher.triangles(),
+        points=points,
+        triangles=triangles,
         regions=regions,
         edges=edges,
-        edge_tags=domain.segment_tags[segment],
+        edge_tags=domain.segment_tags[segments],
         names=domain.names,
         region_names=domain.region_names,
         domain=domain,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,12 +35,49 @@ def predict(domain: Domain, metric: Any) -> int:
     along an edge.
     """
     check_is_domain(domain)
-    field = metrics.as_control_space(metric)
-    polygon = _inscribed(domain, field)
-    complexity = metrics.complexity(polygon.points, polygon.triangles, field).value
-    boundary = metrics.edge_lengths(polygon.points, polygon.border, field).sum()
+    return predicted(domain, metrics.as_control_space(metric)).count
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """A number of vertices, and where the metric was asked for it.
+
+    Attributes
+    ----------
+    count : int
+    points, tensors : (n, 2), (n, 3) arrays
+        Samples of the metric: close to each other where it is large.
+    """
+
+    count: int
+    points: Floats
+    tensors: Floats
+
+
+def predicted(domain: Domain, field: ControlSpace) -> Prediction:
+    """Predict as `predict` does, and keep the samples."""
+    samples = _Samples(field)
+    polygon = _inscribed(domain, samples)
+    complexity = metrics.complexity(polygon.points, polygon.triangles, samples).value
+    boundary = metrics.edge_lengths(polygon.points, polygon.border, samples).sum()
     least = max(3, int(domain.curved.is_vertex.sum()))
-    return max(least, int(2 / np.sqrt(3) * complexity + boundary / 2) + 1)
+    count = max(least, int(2 / np.sqrt(3) * complexity + boundary / 2) + 1)
+    return Prediction(count, np.concatenate(samples.points), np.concatenate(samples.tensors))
+
+
+class _Samples(ControlSpace):
+    """A control space that writes down where it is asked, and what it answers."""
+
+    def __init__(self, field: ControlSpace) -> None:
+        self._field = field
+        self.points: list[Floats] = []
+        self.tensors: list[Floats] = []
+
+    def values(self, points: Floats) -> Floats:
+        tensors = self._field(points)
+        self.points.append(points)
+        self.tensors.append(tensors)
+        return tensors
 
 
 def check_is_domain(domain: object) -> None:

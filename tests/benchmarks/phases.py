@@ -1,34 +1,30 @@
 """Where the time of `generate` goes, stage by stage, without anything built into it.
 
-The functions that `generate` calls are wrapped while it runs, and its progress reports tell the
-stages within the last of them. Time belongs to the innermost stage at work; that of the metric is
-taken out of every other.
+Its progress reports tell the stages; the time of the metric is taken out of every other.
 """
 
 from __future__ import annotations
 
-import functools
-import importlib
 import time
-from contextlib import ExitStack, contextmanager
-from unittest import mock
+from contextlib import contextmanager
 
+import adaptmesh as am
 import metrics
 
-# Functions that adaptmesh.generate calls, and what their time is listed under.
+# Stages that the progress of adaptmesh.generate names, and what their time is listed under.
 STAGES = {
-    "predict": "predict",
-    "cut_outline": "cut",
-    "triangulate_outline": "triangulate",
-    "place_ahead_of_front": "front",
-    "place_along_edges": "edges",
-    "insert_what_was_missed": "missed",
-    "settle": "settle",
-    "finished_mesh": "finish",
+    "predicting the size": "predict",
+    "cutting the boundary": "cut",
+    "triangulating": "triangulate",
+    "placing points ahead of the front": "front",
+    "placing points along edges": "edges",
+    "smoothing": "smooth",
+    "improving": "improve",
+    "final optimisation": "final",
+    "done": "finish",
 }
-REPORTED = {"smoothing": "smooth", "improving": "improve"}  # stages of its progress
 METRIC, CHECKS, REST = "metric", "metric checked", "rest"
-ORDER = (*STAGES.values(), *REPORTED.values(), METRIC, CHECKS, REST)
+ORDER = (*STAGES.values(), METRIC, CHECKS, REST)
 
 
 class Ledger:
@@ -55,16 +51,7 @@ class Ledger:
     def turn_to(self, reported):
         """The outermost stage becomes the one that a progress report names."""
         self._book()
-        if len(self._open) == 1:
-            self._open[0] = REPORTED.get(reported, REST)
-
-    def watched(self, function, name):
-        @functools.wraps(function)
-        def timed(*arguments, **options):
-            with self.stage(name):
-                return function(*arguments, **options)
-
-        return timed
+        self._open[0] = STAGES.get(reported, REST)
 
 
 class Watched(metrics.ControlSpace):
@@ -84,14 +71,7 @@ class Watched(metrics.ControlSpace):
 
 def phases(domain, metric):
     """CPU seconds of each stage of making one mesh."""
-    generate = importlib.import_module("adaptmesh.generate.generate")
     ledger = Ledger()
-    with ExitStack() as patches:
-        for function, name in STAGES.items():
-            timed = ledger.watched(getattr(generate, function), name)
-            patches.enter_context(mock.patch.object(generate, function, timed))
-        generate.generate(
-            domain, Watched(metric, ledger), progress=lambda stage, _: ledger.turn_to(stage)
-        )
+    am.generate(domain, Watched(metric, ledger), progress=lambda stage, _: ledger.turn_to(stage))
     ledger.turn_to(REST)
     return ledger.seconds

@@ -1,4 +1,4 @@
-// Drives the mesher as adaptmesh/generate.py does, without Python: for runs under sanitizers.
+// Analytic metrics, and boundaries cut to unit in them: for runs of the mesher without Python.
 #pragma once
 
 #include <algorithm>
@@ -6,12 +6,9 @@
 #include <functional>
 #include <vector>
 
-#include "adaptmesh/core/edges.hpp"
-#include "adaptmesh/core/front.hpp"
-#include "adaptmesh/core/improve.hpp"
-#include "adaptmesh/core/outline.hpp"
-#include "adaptmesh/core/smooth.hpp"
-#include "adaptmesh/core/swap.hpp"
+#include "adaptmesh/core/boundary_cuts.hpp"
+#include "adaptmesh/core/edge_sampler.hpp"
+#include "adaptmesh/core/metric_field.hpp"
 #include "adaptmesh/core/triangulate.hpp"
 
 namespace sanitize {
@@ -57,9 +54,16 @@ class MovedMetric {
     // Sizes beyond that cannot be held by a tensor.
     bool is_defined() const { return side_ > 1e-60 && side_ < 1e60; }
 
-    Tensor operator()(Point p) const {
+    Tensor at(Point p) const {
         const Point unit = {(p.x - low_.x) / side_, (p.y - low_.y) / side_};
         return (1 / (side_ * side_)) * metric_(unit);
+    }
+
+    MetricField field() const {
+        return [this](const std::vector<Point>& points, std::vector<Tensor>& tensors) {
+            tensors.clear();
+            for (Point p : points) tensors.push_back(at(p));
+        };
     }
 
   private:
@@ -68,112 +72,29 @@ class MovedMetric {
     double side_ = 0;
 };
 
-class MesherRun {
-  public:
-    MesherRun(const ConstrainedTriangulation& outline, const Triangulation& outside,
-              const std::vector<Point>& points, const MovedMetric& metric)
-        : metric_(metric) {
-        mesh.topology = outline.triangulation;
-        for (Point p : points) mesh.vertices.push_back(Vertex::make(p, metric_(p), FIXED));
-        mesh.take_fans_apart();
-        swap(200);
-        cut_outline(outline.sub_edges, Outside(outside, points));
+// The sub-edges of a triangulation as the pieces of a boundary, cut into unit parts.
+inline BoundaryCuts unit_boundary(const std::vector<Point>& points,
+                                  const std::vector<Segment>& segments,
+                                  const std::vector<SubEdge>& sub_edges,
+                                  const MovedMetric& metric) {
+    BoundaryCuts out{points, evaluate(metric.field(), points), segments, {}, {}, {}, {}, {}, {}};
+    for (std::size_t i = 0; i < segments.size(); ++i) out.owners.push_back(Index(i));
+    EdgeSampler sampler(0.125, INFINITY, 0.0);
+    for (const SubEdge& e : sub_edges) {
+        out.pieces.push_back({e.a, e.b, e.segment, false});
+        sampler.add(points[e.a], out.tensors[e.a], points[e.b], out.tensors[e.b]);
     }
-
-    MetricMesh mesh;
-    std::vector<SubEdge> constrained;
-
-    void fill_ahead_of_front() {
-        Front front(mesh, {});
-        while (front.advance(poll_)) {
-            while (front.wanted_count() > 0) front.feed(at_points(front.wanted()));
-            front.insert(poll_);
+    sampler.measure(metric.field());
+    for (Index p = 0; p < sampler.edge_count(); ++p) {
+        std::vector<FieldPoint> cuts;
+        sampler.cut(p, Index(unit_parts(sampler.lengths()[p])), cuts);
+        for (const FieldPoint& cut : cuts) {
+            out.cuts.push_back(cut.at);
+            out.cut_pieces.push_back(p);
         }
     }
-
-    void fill_along_edges() {
-        constexpr double LONG_EDGE = 1.45, SPACING = 0.75;
-        Index inserted = 0;
-        do {
-            const EdgesToMeasure edges = measure_fresh_edges(LONG_EDGE);
-            inserted = insert_along_edges(mesh, edges, LONG_EDGE, SPACING, MOST_VERTICES, poll_);
-            refresh();
-        } while (inserted > 0);
-    }
-
-    void improve() {
-        swap(5);
-        for (int k = 0; k < 2; ++k) {
-            smooth_changed(mesh, poll_);
-            refresh();
-            swap(5);
-        }
-        for (int k = 0; k < 4; ++k) {
-            measure_fresh_edges(INFINITY);
-            collapse_short_edges(mesh, {}, poll_);
-            split_long_edges(mesh, {}, poll_);
-            refresh();
-            swap(5);
-            search_active(mesh, {}, 0.12, poll_);
-            refresh();
-            swap(5);
-        }
-        for (Triangle& t : mesh.topology.triangles) t.fresh |= TO_SWAP;
-        swap_changed(mesh, QualityCriterion{0.5}, 3, poll_);
-        const std::vector<Index> name = mesh.compact();
-        for (SubEdge& e : constrained) e.a = name[e.a], e.b = name[e.b];
-    }
-
-  private:
-    static constexpr Index MOST_VERTICES = 20000;
-
-    void swap(int passes) { swap_changed(mesh, DelaunayCriterion{}, passes, poll_); }
-
-    std::function<Tensor(std::size_t)> at_points(std::vector<double> xy) const {
-        return [this, xy](std::size_t i) { return metric_({xy[2 * i], xy[2 * i + 1]}); };
-    }
-
-    void measure(EdgeSampler& sampler) const {
-        while (sampler.wanted_count()) sampler.feed(at_points(sampler.wanted()));
-    }
-
-    EdgesToMeasure measure_fresh_edges(double to_cut) {
-        EdgesToMeasure edges = take_fresh_edges(mesh, to_cut);
-        measure(edges.sampler);
-        correct_lengths(mesh, edges);
-        return edges;
-    }
-
-    void cut_outline(const std::vector<SubEdge>& sub_edges, Outside outside) {
-        EdgeSampler sampler(0.125, INFINITY, 0);
-        for (const SubEdge& e : sub_edges) {
-            const Vertex &a = mesh.vertices[e.a], &b = mesh.vertices[e.b];
-            sampler.add(a.at, a.metric, b.at, b.metric);
-        }
-        measure(sampler);
-        std::vector<Piece> pieces;
-        std::size_t n_cuts = 0;
-        for (std::size_t i = 0; i < sub_edges.size(); ++i) {
-            const SubEdge& e = sub_edges[i];
-            pieces.push_back({e.a, e.b, e.segment, n_cuts, {}});
-            std::vector<FieldPoint> cuts;
-            sampler.cut(Index(i), Index(unit_parts(sampler.lengths()[i])), cuts);
-            for (const FieldPoint& p : cuts)
-                pieces.back().cuts.push_back(Vertex::make(p.at, metric_(p.at), e.segment));
-            n_cuts += cuts.size();
-        }
-        constrained = OutlineCutter(mesh, outside).cut(pieces, poll_);
-    }
-
-    void refresh() {
-        for (Index v : mesh.stale)
-            mesh.vertices[v] =
-                Vertex::make(mesh.at(v), metric_(mesh.at(v)), mesh.vertices[v].held_by);
-        mesh.stale.clear();
-    }
-
-    const MovedMetric& metric_;
-    NoPoll poll_;
-};
+    out.cut_tensors = evaluate(metric.field(), out.cuts);
+    return out;
+}
 
 }  // namespace sanitize

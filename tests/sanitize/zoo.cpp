@@ -1,7 +1,8 @@
 // The core over degenerate inputs, to be run under sanitizers. From the root of the project:
 //
 //   g++ -std=c++17 -O1 -g -Wall -Wextra -ffp-contract=off -D_GLIBCXX_ASSERTIONS
-//       -fsanitize=address,undefined -fno-sanitize-recover=all -I. tests/sanitize/zoo.cpp -o zoo
+//       -fsanitize=address,undefined -fno-sanitize-recover=all -I. tests/sanitize/zoo.cpp
+//       $(ls adaptmesh/core/*.cpp | grep -v bind) -o zoo
 //   ./zoo
 //
 // Prints what it ran; a failed check or a sanitizer ends it with an error. To add a part of the
@@ -17,14 +18,18 @@
 #include <vector>
 
 #include "adaptmesh/core/border_sweep.hpp"
+#include "adaptmesh/core/generate.hpp"
 #include "adaptmesh/core/load.hpp"
 #include "adaptmesh/core/triangulate.hpp"
+#include "tests/sanitize/final_stage.hpp"
 #include "tests/sanitize/mesher.hpp"
 #include "tests/sanitize/transfer.hpp"
 
 using namespace adaptmesh;
 
 namespace {
+
+Monitor monitor(20000, 1000);  // of all runs
 
 struct Input {
     std::string name;
@@ -73,9 +78,8 @@ void check_mesh(const Triangulation& mesh, const Input& input) {
 // ---- The parts of the core ----
 
 void run_delaunay(const Input& input) {
-    NoPoll poll;
     std::vector<Index> duplicate_of;
-    const Triangulation mesh = delaunay(input.points, duplicate_of, poll);
+    const Triangulation mesh = delaunay(input.points, duplicate_of, monitor);
     check_mesh(mesh, input);
     // Every point is found where it is, from anywhere.
     const auto at = [&input](Index v) { return input.points[v]; };
@@ -130,13 +134,12 @@ void check_location(const Triangulation& mesh, const Input& input, Point p, Loca
 }
 
 void run_locate(const Input& input) {
-    NoPoll poll;
     std::mt19937 random(5);
     std::vector<Index> duplicate_of;
-    Triangulation hull = delaunay(input.points, duplicate_of, poll);
+    Triangulation hull = delaunay(input.points, duplicate_of, monitor);
     scramble(hull, input, random);
     Triangulation domain =
-        triangulate(input.points, input.segments, input.options, poll).triangulation;
+        triangulate(input.points, input.segments, input.options, monitor).triangulation;
     scramble(domain, input, random);
 
     const auto at = [&input](Index v) { return input.points[v]; };
@@ -166,16 +169,14 @@ void check_border(const Triangulation& mesh, const Input& input) {
             if (t.n[i] == NONE) border.push_back({t.v[(i + 1) % 3], t.v[(i + 2) % 3]});
         }
     }
-    NoPoll poll;
-    const BorderSweep found = sweep_border(input.points, border, poll);
+    const BorderSweep found = sweep_border(input.points, border, monitor);
     require(found.first == NONE, input, "no two border edges cross");
     for (Index layers : found.layers) require(layers == 1, input, "one triangle inside an edge");
 }
 
 void run_triangulate(const Input& input) {
-    NoPoll poll;
     const ConstrainedTriangulation out =
-        triangulate(input.points, input.segments, input.options, poll);
+        triangulate(input.points, input.segments, input.options, monitor);
     check_mesh(out.triangulation, input);
     std::size_t locked = 0, border = 0;
     for (const Triangle& t : out.triangulation.triangles) {
@@ -193,28 +194,27 @@ void run_triangulate(const Input& input) {
 // and none of them has vanished.
 void run_mesher(const Input& input) {
     static std::size_t turn = 0;
-    NoPoll poll;
-    Triangulation outside;
-    const ConstrainedTriangulation outline =
-        triangulate(input.points, input.segments, input.options, poll, &outside);
     const auto& all = sanitize::metrics_of_unit_square();
+    const auto sub_edges =
+        triangulate(input.points, input.segments, input.options, monitor).sub_edges;
     const sanitize::MovedMetric metric(all[++turn % all.size()], input.points);
     if (!metric.is_defined()) return;
+    const BoundaryCuts boundary =
+        sanitize::unit_boundary(input.points, input.segments, sub_edges, metric);
+    const Samples samples{input.points, boundary.tensors};
 
-    for (bool ahead_of_front : {true, false}) {
-        sanitize::MesherRun run(outline, outside, input.points, metric);
-        if (ahead_of_front) run.fill_ahead_of_front();
-        run.fill_along_edges();
-        run.improve();
+    for (Placement placement : {Placement::front, Placement::edges}) {
+        const MetricMesh mesh =
+            generate(boundary, input.options, samples, placement, metric.field(), monitor);
         Input result{input.name + ", meshed", {}, {}, {}};
-        for (const Vertex& v : run.mesh.vertices) result.points.push_back(v.at);
-        check_mesh(run.mesh.topology, result);
+        for (const Vertex& v : mesh.vertices) result.points.push_back(v.at);
+        check_mesh(mesh.topology, result);
         std::set<std::pair<Index, Index>> locked;
-        for (const EdgeSide& s : sides_of(run.mesh.topology)) {
-            const Triangle& T = run.mesh.triangle(triangle_of(s.code));
+        for (const EdgeSide& s : sides_of(mesh.topology)) {
+            const Triangle& T = mesh.triangle(triangle_of(s.code));
             if (is_locked(T.n[slot_of(s.code)])) locked.insert({s.low, s.high});
         }
-        for (const SubEdge& e : run.constrained) {
+        for (const SubEdge& e : mesh.constrained) {
             require(locked.count(std::minmax(e.a, e.b)) == 1, result,
                     "constrained edges are locked edges");
         }
@@ -225,9 +225,8 @@ void run_mesher(const Input& input) {
 void check_overlay(const sanitize::FlatMesh& older, const sanitize::FlatMesh& newer,
                    const Input& input) {
     if (!older.is_valid() || !newer.is_valid()) return;
-    NoPoll poll;
     const metrics::Locator old_mesh = older.locator(), new_mesh = newer.locator();
-    const Overlay overlay(old_mesh, older.areas.data(), new_mesh, newer.areas.data(), poll);
+    const Overlay overlay(old_mesh, older.areas.data(), new_mesh, newer.areas.data(), monitor);
     double area = 0;
     for (std::size_t k = 0; k < newer.areas.size(); ++k) {
         double covered = 0;
@@ -243,7 +242,7 @@ void check_overlay(const sanitize::FlatMesh& older, const sanitize::FlatMesh& ne
     const std::vector<double> ones(older.points.size(), 1.0);
     std::vector<double> out(newer.points.size(), 0.0);
     Moments<Linear> moments(overlay, ones.data(), 1, older.triangles.data(), 0.25, {});
-    moments.add_to(out.data(), newer.triangles.data(), poll);
+    moments.add_to(out.data(), newer.triangles.data(), monitor);
     double sum = 0;
     for (double moment : out) sum += moment;
     require(std::fabs(sum - area) <= 1e-10 * area, input, "the moments of 1 are the area");
@@ -258,11 +257,10 @@ void check_overlay(const sanitize::FlatMesh& older, const sanitize::FlatMesh& ne
 }
 
 void run_transfer(const Input& input) {
-    NoPoll poll;
     std::vector<Index> duplicate_of;
-    const Triangulation hull = delaunay(input.points, duplicate_of, poll);
+    const Triangulation hull = delaunay(input.points, duplicate_of, monitor);
     const Triangulation domain =
-        triangulate(input.points, input.segments, input.options, poll).triangulation;
+        triangulate(input.points, input.segments, input.options, monitor).triangulation;
     const sanitize::FlatMesh whole(input.points, hull), part(input.points, domain);
     const sanitize::FlatMesh fine = part.refined();
     check_overlay(whole, part, input);
@@ -412,7 +410,8 @@ Input moved(Input input, double scale, double offset) {
 }  // namespace
 
 int main() {
-    int meshes = 0, faults = 0;
+    sanitize::check_final_optimisation(monitor);
+    int meshes = 0, faults = 0, too_large = 0;
     for (const Input& original : zoo()) {
         for (double scale : {1e-9, 1.0, 1e9}) {
             for (double offset : {0.0, 1e6}) {
@@ -423,10 +422,12 @@ int main() {
                         ++meshes;
                     } catch (const Fault&) {
                         ++faults;
+                    } catch (const TooManyVertices&) {
+                        ++too_large;
                     }
                 }
             }
         }
     }
-    std::printf("%d meshes, %d inputs refused\n", meshes, faults);
+    std::printf("%d runs, %d inputs refused, %d meshes too large\n", meshes, faults, too_large);
 }
