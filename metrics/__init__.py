@@ -17,6 +17,7 @@ from .from_solution.normalise import Limits, combined, interpolation_error, lp_m
 from .from_solution.optimal_metric import metric_from_hessians, metric_from_solution
 from .from_solution.recovery import absolute, gradients, hessians
 from .gradation import graded
+from .graded_field import graded_on as _graded_on  # noqa: F401, it sets ControlSpace.grade
 from .measure.exact import (
     Complexity,
     complexity,

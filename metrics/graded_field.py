@@ -36,3 +36,6 @@ def _graded_at_vertices(field: ControlSpace, mesh: Any, beta: float, law: str) -
         )
     values = field(np.asarray(points)[:, :2])
     return field & Background.on(mesh, values).graded(beta=beta, law=law)
+
+
+ControlSpace.grade = graded_on

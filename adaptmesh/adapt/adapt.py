@@ -6,8 +6,6 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 import metrics
 from adaptmesh.boundary.vertex_limit import Progress, VertexLimit
 from adaptmesh.domain.domain import Domain
@@ -16,6 +14,7 @@ from adaptmesh.generate.prediction import predicted
 from adaptmesh.mesh.boundary_polylines import vertices_at
 from adaptmesh.mesh.checks import check_is_mesh
 from adaptmesh.mesh.cleaned import with_edges_once
+from adaptmesh.mesh.control_space import control_space_on
 from adaptmesh.mesh.mesh import Mesh
 from metrics import ControlSpace
 
@@ -124,10 +123,3 @@ def _more_unit(edited: Mesh, again: Mesh, field: ControlSpace) -> Mesh:
         return 1 - float(is_off(lengths).mean())
 
     return edited if unit(edited) >= unit(again) - TOLERANCE else again
-
-
-def control_space_on(mesh: Mesh, metric: Any) -> ControlSpace:
-    """A control space from values at the vertices of a mesh, or from anything `generate` takes."""
-    if callable(metric) or np.ndim(metric) == 0:
-        return metrics.as_control_space(metric)
-    return metrics.Background(mesh.points, mesh.triangles, metric)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from adaptmesh.adapt.adapt import control_space_on
+from adaptmesh.mesh.checks import check_measurable
+from adaptmesh.mesh.control_space import control_space_on
 from adaptmesh.value import FrozenMapping, Value
 from metrics.measure.exact import edge_lengths, mesh_edges, metric_areas
 
@@ -20,7 +21,6 @@ from .report import (
     SHORTEST,
     WorstEdge,
     WorstTriangle,
-    check_measurable,
     edge_entries,
     qualities,
     ratio_to_unit,

@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 import numpy as np
+from rich.console import RenderableType
 
-from adaptmesh.adapt.adapt import control_space_on
-from adaptmesh.mesh.checks import check_is_mesh
+from adaptmesh.mesh.checks import check_measurable
+from adaptmesh.mesh.control_space import control_space_on
+from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.validate.validate import InvalidMeshError
 from adaptmesh.types import Floats, Index
-from adaptmesh.value import FrozenMapping, Value
+from adaptmesh.value import FrozenMapping
 from metrics.measure.exact import edge_lengths, mesh_edges, metric_areas
 
-from .reasons import MET, Reason, Reasons
-
-if TYPE_CHECKING:
-    from adaptmesh.mesh.mesh import Mesh
+from .figures import Figures, Histogram, WorstEdge, WorstTriangle
+from .reasons import MET, Reasons
+from .report_text import as_html, as_renderable, as_text
 
 __all__ = ["Histogram", "Report", "WorstEdge", "WorstTriangle", "measure"]
-
-Point = tuple[float, float]
 
 # A unit edge is as long as these, both included whatever the rounding: a grid of squares of side
 # one is a unit mesh.
@@ -37,40 +34,7 @@ LENGTH_BINS = np.concatenate([[0.0], 2.0 ** (np.arange(-12, 13) / 8), [np.inf]])
 QUALITY_BINS = np.linspace(0, 1, 21)
 
 
-class Histogram(NamedTuple):
-    """How many values lie between consecutive edges; each bin holds its lower edge."""
-
-    edges: tuple[float, ...]
-    counts: tuple[int, ...]
-
-    @classmethod
-    def of(cls, values: Floats, edges: Floats) -> Histogram:
-        """Count values; the last bin holds its upper edge too."""
-        counts = np.histogram(values, edges)[0]
-        return cls(tuple(edges.tolist()), tuple(counts.tolist()))
-
-
-class WorstEdge(NamedTuple):
-    """An edge far from unit."""
-
-    length: float
-    vertices: tuple[int, int]
-    start: Point
-    end: Point
-    reason: Reason
-
-
-class WorstTriangle(NamedTuple):
-    """A triangle far from equilateral in the metric."""
-
-    quality: float
-    triangle: int
-    corners: tuple[Point, Point, Point]
-    reason: Reason
-
-
-@dataclass(frozen=True, eq=False)
-class Report(Value):
+class Report(Figures):
     """How unit a mesh is in a metric; print it.
 
     With l the metric length of an edge, over all edges, and Q the quality of a triangle,
@@ -107,48 +71,13 @@ class Report(Value):
         from a mesh (see `Mesh.to_domain`); else empty.
     """
 
-    length_rule: str
-    n_points: int
-    n_triangles: int
-    n_edges: int
-    unit_fraction: float
-    short_fraction: float
-    long_fraction: float
-    efficiency_index: float
-    efficiency_index_frey_george: float
-    length_min: float
-    length_mean: float
-    length_max: float
-    length_quantiles: Mapping[float, float]
-    quality_min: float
-    quality_p1: float
-    quality_mean: float
-    complexity: float
-    ideal_triangles: float
-    count_ratio: float
-    length_histogram: Histogram
-    quality_histogram: Histogram
-    worst_edges: tuple[WorstEdge, ...]
-    worst_triangles: tuple[WorstTriangle, ...]
-    border: str
-
-    def as_dict(self) -> dict[str, Any]:
-        """Everything in dicts, lists, numbers and strings, ready for JSON; infinity is None."""
-        return {name: _plain(value) for name, value in vars(self).items()}
-
     def __str__(self) -> str:
-        from .report_text import as_text
-
         return as_text(self)
 
     def _repr_html_(self) -> str:
-        from .report_text import as_html
-
         return as_html(self)
 
-    def __rich__(self) -> Any:
-        from .report_text import as_renderable
-
+    def __rich__(self) -> RenderableType:
         return as_renderable(self)
 
 
@@ -248,34 +177,6 @@ def ratio_to_unit(lengths: Floats) -> Floats:
     with np.errstate(divide="ignore"):
         out: Floats = np.minimum(lengths, 1 / lengths)
     return out
-
-
-def _plain(value: Any) -> Any:
-    """A value without numpy types, tuples and infinities."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if hasattr(value, "_asdict"):
-        return _plain(value._asdict())
-    if isinstance(value, tuple):
-        return [_plain(item) for item in value]
-    return None if value == float("inf") else value
-
-
-def check_measurable(mesh: Mesh) -> None:
-    check_is_mesh(mesh)
-    t, n = mesh.triangles, len(mesh.points)
-    if len(t) == 0:
-        raise InvalidMeshError("the mesh has no triangles: there is nothing to measure")
-    bad = np.flatnonzero(((t < 0) | (t >= n)).any(axis=1))
-    if len(bad):
-        raise InvalidMeshError(
-            f"triangle {bad[0]} has the vertices {t[bad[0]].tolist()}, but the points are numbered "
-            f"0 to {n - 1}: see mesh.validate()"
-        )
-    bad = np.flatnonzero(~np.isfinite(mesh.points).all(axis=1))
-    if len(bad):
-        x, y = mesh.points[bad[0]]
-        raise InvalidMeshError(f"point {bad[0]} is ({x}, {y}): see mesh.validate()")
 
 
 def edge_entries(

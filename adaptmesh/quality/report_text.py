@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Group, RenderableType
@@ -14,10 +13,8 @@ from rich.text import Text
 from adaptmesh.text.places import place_text
 from adaptmesh.text.rich import html, plain
 
+from .figures import Figures, Point
 from .reasons import Cause, Reason
-
-if TYPE_CHECKING:
-    from .report import Point, Report
 
 WIDTH = 100
 ROWS = 6  # height of the histograms
@@ -25,17 +22,17 @@ SHOWN = 3  # worst edges and triangles
 EIGHTHS = " ▁▂▃▄▅▆▇█"
 
 
-def as_text(report: Report) -> str:
+def as_text(report: Figures) -> str:
     """The report in plain text, without colours."""
     return plain(as_renderable(report), WIDTH)
 
 
-def as_html(report: Report) -> str:
+def as_html(report: Figures) -> str:
     """The report for a notebook."""
     return html(as_renderable(report), WIDTH)
 
 
-def as_renderable(report: Report) -> RenderableType:
+def as_renderable(report: Figures) -> RenderableType:
     """The report for a rich console."""
     histograms = Table.grid(padding=(0, 6, 0, 0))
     histograms.add_row(_length_histogram(report), _quality_histogram(report))
@@ -52,7 +49,7 @@ def as_renderable(report: Report) -> RenderableType:
     return Padding(Group(*parts), (0, 0, 0, 1))
 
 
-def _key_figures(report: Report) -> Table:
+def _key_figures(report: Figures) -> Table:
     r = report
     table = Table.grid(padding=(0, 3, 0, 0))
     table.add_column(style="dim")
@@ -93,7 +90,7 @@ def _key_figures(report: Report) -> Table:
     return table
 
 
-def _length_histogram(report: Report) -> Group:
+def _length_histogram(report: Figures) -> Group:
     """A column for each eighth of an octave, those of unit edges over a heavy line."""
     counts = report.length_histogram.counts
     unit = [0.7 < low < 1.4 for low in report.length_histogram.edges[:-1]]
@@ -106,7 +103,7 @@ def _length_histogram(report: Report) -> Group:
     )
 
 
-def _quality_histogram(report: Report) -> Group:
+def _quality_histogram(report: Figures) -> Group:
     """A column for each twentieth."""
     counts = report.quality_histogram.counts
     return Group(
@@ -130,7 +127,7 @@ def _columns(counts: Sequence[int], good: Sequence[bool]) -> list[Text]:
     return lines
 
 
-def _worst(report: Report) -> Table:
+def _worst(report: Figures) -> Table:
     table = Table.grid(padding=(0, 3, 0, 0))
     table.add_column(justify="right", style="bold")
     table.add_column()

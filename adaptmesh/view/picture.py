@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from adaptmesh.adapt.adapt import control_space_on
 from adaptmesh.domain.domain import Domain
-from adaptmesh.quality.report import check_measurable
+from adaptmesh.mesh.checks import check_measurable
+from adaptmesh.mesh.control_space import control_space_on
 from metrics import ControlSpace
 
 from . import layers
