@@ -13,19 +13,13 @@ from .from_solution.estimators import (
 )
 from .from_solution.goal_oriented import metric_from_adjoint
 from .from_solution.hessian_field import Curvature, interpolation_errors
-from .from_solution.normalise import Limits, combined, interpolation_error, lp_metric, normalised
+from .from_solution.limits import Limits
+from .from_solution.normalise import combined, interpolation_error, lp_metric, normalised
 from .from_solution.optimal_metric import metric_from_hessians, metric_from_solution
 from .from_solution.recovery import absolute, gradients, hessians
 from .gradation import graded
-from .graded_field import graded_on as _graded_on  # noqa: F401, it sets ControlSpace.grade
-from .measure.exact import (
-    Complexity,
-    complexity,
-    edge_lengths,
-    mesh_edges,
-    metric_areas,
-    qualities,
-)
+from .measure.complexity import Complexity, complexity
+from .measure.exact import edge_lengths, metric_areas, qualities
 from .measure.implied import implied_metric, triangle_metrics
 from .measure.nodal import (
     efficiency_index,
@@ -47,6 +41,7 @@ from .sizes import (
     Shock,
     first_height,
 )
+from .topology import mesh_edges
 
 __all__ = [
     "AdaptmeshError",

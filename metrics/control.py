@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from numbers import Real
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,9 +17,15 @@ from numpy.typing import ArrayLike
 from . import tensor
 from .checks import as_points
 from .errors import AdaptmeshError, MetricError
+from .gradation import check_growth
+from .interpolant import MeshInterpolant, mesh_arrays
 from .types import Floats
 
 __all__ = ["ControlSpace", "Metric", "Uniform", "as_control_space"]
+
+# Meshes of a domain made to grade a field on, each for what was graded on the one before: the
+# first is coarse beside a jump.
+GRADED_MESHES = 2
 
 
 class ControlSpace(ABC):
@@ -38,9 +44,6 @@ class ControlSpace(ABC):
     """
 
     __array_ufunc__ = None  # np.float64(0.1) & field is ours to answer, not numpy's
-
-    grade: ClassVar[Callable[[ControlSpace, Any, float, str], ControlSpace]]
-    """What `graded` calls: set by `graded_field`, which needs fields on meshes, from above."""
 
     @abstractmethod
     def values(self, points: Floats) -> ArrayLike:
@@ -112,7 +115,13 @@ class ControlSpace(ABC):
         MetricError
             For a `beta` not above 1, another law, or something else than a domain or mesh.
         """
-        return type(self).grade(self, domain, beta, law)
+        check_growth(beta, law)
+        if not hasattr(domain, "background_mesh"):
+            return Graded(self, domain, beta, law)
+        graded: ControlSpace = self
+        for _ in range(GRADED_MESHES):
+            graded = Graded(self, domain.background_mesh(graded), beta, law)
+        return graded
 
 
 Metric: TypeAlias = "float | Callable[[Floats], ArrayLike] | ControlSpace"
@@ -276,3 +285,20 @@ class Limited(ControlSpace):
         if self.max_anisotropy < np.inf:
             limits.append(repr(self.max_anisotropy))
         return f"({self.field!r}).limited({', '.join(limits)})"
+
+
+class Graded(ControlSpace):
+    """A field, intersected with what it is at the vertices of a mesh when it is graded there."""
+
+    def __init__(self, field: ControlSpace, mesh: Any, beta: float, law: str) -> None:
+        points, triangles = mesh_arrays(mesh)
+        given = MeshInterpolant(points, triangles, field(points))
+        tensors = given.graded_at_vertices(beta, law)
+        self.field, self.beta, self.law = field, beta, law
+        self.bound = MeshInterpolant(given.points, given.triangles, tensors)
+
+    def values(self, points: Floats) -> ArrayLike:
+        return tensor.intersect(self.field(points), self.bound.evaluate(points)[0])
+
+    def __repr__(self) -> str:
+        return f"({self.field!r}).graded(beta={self.beta!r}, law={self.law!r})"

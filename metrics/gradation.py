@@ -7,7 +7,9 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _core, tensor
+import metrics._core as _core
+
+from . import tensor
 from .checks import as_points, as_triangles
 from .errors import MetricError
 from .types import Floats

@@ -15,7 +15,8 @@ from metrics import Curvature, Limits, normalised
 from metrics.from_solution.normalise import check_combination, check_norm
 from metrics.from_solution.optimal_metric import optimal_tensors
 from metrics.from_solution.recovery import check_method
-from metrics.measure.nodal import border_edges, vertices_of
+from metrics.measure.nodal import vertices_of
+from metrics.topology import border_edges
 
 from .error_control import next_count
 from .history import Iteration

@@ -15,7 +15,7 @@ from adaptmesh.domain.periodic import PeriodicSides
 from adaptmesh.geometry.areas import triangle_areas
 from adaptmesh.types import Floats, Ints
 from adaptmesh.value import FrozenMapping, Value
-from metrics.measure.exact import mesh_edges
+from metrics.topology import mesh_edges
 
 
 @dataclass(frozen=True, eq=False, repr=False)

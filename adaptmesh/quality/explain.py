@@ -12,7 +12,8 @@ import numpy as np
 from adaptmesh.mesh.checks import check_measurable
 from adaptmesh.mesh.control_space import control_space_on
 from adaptmesh.value import FrozenMapping, Value
-from metrics.measure.exact import edge_lengths, mesh_edges, metric_areas
+from metrics.measure.exact import edge_lengths, metric_areas
+from metrics.topology import mesh_edges
 
 from .reasons import Cause, Reasons
 from .report import (

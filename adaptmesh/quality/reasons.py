@@ -18,7 +18,8 @@ import metrics
 from adaptmesh.text.places import place_text
 from adaptmesh.types import Floats
 from metrics import ControlSpace
-from metrics.measure.exact import edge_lengths, mesh_edges
+from metrics.measure.exact import edge_lengths
+from metrics.topology import mesh_edges
 
 if TYPE_CHECKING:
     from adaptmesh.mesh.mesh import Mesh

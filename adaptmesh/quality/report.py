@@ -13,7 +13,8 @@ from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.validate.validate import InvalidMeshError
 from adaptmesh.types import Floats, Index
 from adaptmesh.value import FrozenMapping
-from metrics.measure.exact import edge_lengths, mesh_edges, metric_areas
+from metrics.measure.exact import edge_lengths, metric_areas
+from metrics.topology import mesh_edges
 
 from .figures import Figures, Histogram, WorstEdge, WorstTriangle
 from .reasons import MET, Reasons

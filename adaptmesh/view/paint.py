@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.types import Floats, Index
 from metrics import ControlSpace
-from metrics.measure.exact import edge_lengths, mesh_edges, qualities
+from metrics.measure.exact import edge_lengths, qualities
+from metrics.topology import mesh_edges
 
 from .colours import (
     EDGE,

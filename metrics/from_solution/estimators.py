@@ -14,10 +14,11 @@ from numpy.typing import ArrayLike, NDArray
 from metrics.background import Background
 from metrics.checks import as_numbers
 from metrics.errors import MetricError
-from metrics.measure.exact import mesh_edges
+from metrics.topology import mesh_edges
 from metrics.types import Floats, Ints
 
-from .normalise import Limits, count_goal, scaled_to
+from .limits import Limits
+from .normalise import count_goal, scaled_to
 from .p1_elements import LinearElements, checked_mesh, checked_values
 from .recovery import gradients
 

@@ -10,7 +10,7 @@ from metrics.checks import as_numbers
 from metrics.errors import MetricError
 from metrics.types import Floats
 
-from .normalise import Limits
+from .limits import Limits
 from .optimal_metric import metric_from_hessians
 from .p1_elements import checked_mesh, place_of
 from .recovery import absolute, gradients, hessians, largest_magnitude

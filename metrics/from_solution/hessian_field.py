@@ -8,7 +8,8 @@ from functools import cached_property, reduce
 import numpy as np
 from numpy.typing import ArrayLike
 
-from metrics import _core, tensor
+import metrics._core as _core
+from metrics import tensor
 from metrics.checks import as_numbers, as_points, as_triangles
 from metrics.errors import MetricError
 from metrics.types import Floats, Ints

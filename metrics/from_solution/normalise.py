@@ -11,12 +11,13 @@ from numpy.typing import ArrayLike
 from metrics import tensor
 from metrics.checks import as_points, as_triangles
 from metrics.errors import MetricError
-from metrics.gradation import check_growth, graded
-from metrics.measure.nodal import border_edges, nodal_complexity, nodal_lengths, vertices_of
+from metrics.measure.nodal import nodal_complexity, nodal_lengths, vertices_of
+from metrics.topology import border_edges
 from metrics.types import Floats, Ints
 
+from .limits import Limits
+
 __all__ = [
-    "Limits",
     "combined",
     "interpolation_error",
     "lp_metric",
@@ -27,44 +28,6 @@ _PRECISION = 5e-4  # of the logarithm of the amount
 _NARROW = 1e-9  # an interval for the logarithm of the factor in which there is no more to find
 _LEAST_SLOPE = 0.1  # of the excess over the logarithm, for a secant to be trusted
 _FAR = 200.0  # logarithm of a factor beyond any use
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What a metric may be at all, and how fast it may change.
-
-    Attributes
-    ----------
-    h_min, h_max : float
-        Bounds on sizes.
-    max_anisotropy : float
-        Bound on the ratio of the two sizes at a point.
-    gradation : float or None
-        Bound on growth, the `beta` of `graded`; None for no bound. Measured in docs/theory.
-    law : str
-        Of growth, see `graded`.
-    """
-
-    h_min: float = 0.0
-    h_max: float = np.inf
-    max_anisotropy: float = np.inf
-    gradation: float | None = 2.0
-    law: str = "mixed"
-
-    def __post_init__(self) -> None:
-        tensor.check_limits(self.h_min, self.h_max, self.max_anisotropy)
-        if self.gradation is not None:
-            check_growth(self.gradation, self.law)
-
-    def bounded(self, metric: Floats) -> Floats:
-        return tensor.limit(metric, self.h_min, self.h_max, self.max_anisotropy)
-
-    def applied(self, metric: Floats, points: Floats, triangles: Ints) -> Floats:
-        """Limits, gradation, and limits again: an intersection may be below `h_min`."""
-        metric = self.bounded(metric)
-        if self.gradation is None:
-            return metric
-        return self.bounded(graded(metric, points, triangles, self.gradation, self.law))
 
 
 def lp_metric(absolute_hessians: ArrayLike, p: float = 2) -> Floats:

@@ -15,9 +15,9 @@ from metrics.measure.nodal import nodal_complexity
 from metrics.types import Floats, Ints
 
 from .hessian_field import Curvature
+from .limits import Limits
 from .normalise import (
     Goal,
-    Limits,
     check_norm,
     combined,
     count_goal,

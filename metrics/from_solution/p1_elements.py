@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from metrics import _core
+import metrics._core as _core
 from metrics.checks import as_numbers, as_points, as_triangles
 from metrics.errors import MetricError
 from metrics.types import Floats, Ints

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from metrics import _core, tensor
+import metrics._core as _core
+from metrics import tensor
 from metrics.checks import as_points, as_triangles
 from metrics.errors import MetricError
 from metrics.types import Floats

@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from metrics import _core, tensor
+import metrics._core as _core
+from metrics import tensor
 from metrics.checks import as_indices, as_points, as_triangles
 from metrics.errors import MetricError
-from metrics.types import Floats, Ints
-
-from .exact import mesh_edges
+from metrics.topology import border_edges, mesh_edges
+from metrics.types import Floats
 
 __all__ = [
     "LENGTH_RULES",
@@ -127,12 +127,6 @@ def predicted_vertices(points: ArrayLike, triangles: ArrayLike, metric: Any) -> 
 def vertices_of(complexity: float, border: float) -> float:
     """How many vertices a unit mesh has, with a border of that metric length."""
     return float(2 / np.sqrt(3) * complexity + border / 2 + 1)
-
-
-def border_edges(triangles: ArrayLike) -> Ints:
-    """The edges with one triangle only, (k, 2)."""
-    edges, sides = mesh_edges(triangles)
-    return edges[np.bincount(sides.ravel(), minlength=len(edges)) == 1]
 
 
 def efficiency_index(lengths: ArrayLike, definition: str = "mean square") -> float:

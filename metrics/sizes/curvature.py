@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from metrics import _core
+import metrics._core as _core
 from metrics.checks import as_points, h_limit, number, positive
 from metrics.control import ControlSpace
 from metrics.errors import MetricError

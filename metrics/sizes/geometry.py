@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from metrics import _core
+import metrics._core as _core
 from metrics.checks import as_points
 from metrics.errors import MetricError
 from metrics.types import Floats, Ints
