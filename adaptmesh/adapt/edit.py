@@ -1,7 +1,7 @@
 """Editing a mesh where it does not fit a metric, and nowhere else.
 
 1. Load: the mesh as it is becomes one that can be edited; the metric is evaluated at its vertices.
-2. Outline: rows of edges along the boundary are cut anew where they are not unit.
+2. Outline: edges along the boundary are cut again where they are not unit.
 3. Zone: what touches an edge that is not unit, and its neighbours, is removed; all else is held.
 4. Fill: as in `generate`, ahead of a front (which passes what it finds good) and along edges; the
    new vertices are smoothed. Edges can be too long where there was no vertex to remove: the mesh is
@@ -21,11 +21,11 @@ import numpy as np
 from adaptmesh._core import FIXED, FREE, MetricMesh
 from adaptmesh.boundary.vertex_limit import Progress, VertexLimit
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.side import Lines
+from adaptmesh.domain.side import Sides
 from adaptmesh.errors import DomainError
 from adaptmesh.generate.generate import finished_mesh
 from adaptmesh.generate.prediction import Prediction
-from adaptmesh.mesh.boundary_polylines import Chains, find_chains, vertices_at
+from adaptmesh.mesh.boundary_polylines import BoundaryPolylines, find_polylines, vertices_at
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.validate.covering import covered_once, simple_border
 from adaptmesh.mesh.validate.local import positive_triangles
@@ -33,7 +33,8 @@ from adaptmesh.mesh.validate.subject import Subject
 from adaptmesh.types import Ints
 from metrics import ControlSpace
 
-from .recut_boundary import had_better_be_anew, recut
+from .plan_boundary import Boundary
+from .recut_boundary import recut
 from .select_zone import Misfits, find_misfits
 
 TURNS = 3
@@ -60,18 +61,23 @@ def edited(
 ) -> Edited | None:
     """The mesh, edited to fit a metric; None if a new one had better be made."""
     report("loading the mesh", 0.02)
-    lines = Lines.of(domain)
-    chains = find_chains(mesh, lines)
-    if chains is None:
+    sides = domain.all_sides
+    polylines = find_polylines(mesh, domain)
+    if polylines is None:
         return None
-    held = holders(mesh, lines, chains)
+    held = holders(mesh, sides, polylines)
     core = load(mesh, domain, held, field)
+
+    def boundary_of(polylines: BoundaryPolylines) -> Boundary:
+        points = core.points()[polylines.vertices]
+        return Boundary(sides, polylines, points, field, limit.max_vertices)
+
     outline_fits = False
     for turn in range(TURNS):
         if not outline_fits:
-            before = chains
-            chains = recut(core, before, lines, field, limit.max_vertices)
-            outline_fits = chains is before
+            before = polylines
+            polylines = recut(core, boundary_of(before))
+            outline_fits = polylines is before
         misfits = measured_misfits(core, field)
         removable = core.hold_all_but(misfits.zone)
         if not removable and not misfits.has_long_edges:
@@ -81,10 +87,10 @@ def edited(
         monitor = limit.monitor(within(report, turn / TURNS, 1 / TURNS))
         with limit.explained():
             core.refill(samples.points, samples.tensors, field, monitor)
-    if had_better_be_anew(core, chains, lines, field, limit.max_vertices):
+    if boundary_of(polylines).is_far_from_new():
         return None
     share = measured_misfits(core, field).share
-    arrays = core.finished(chains.edges, lines.segments[chains.edge_lines])
+    arrays = core.finished(polylines.edges, sides.segments[polylines.edge_sides])
     new = finished_mesh(domain, arrays, regions=arrays[2])
     if not _is_plane(new):
         return None
@@ -114,11 +120,11 @@ def within(report: Progress, start: float, share: float) -> Progress:
     return lambda stage, fraction: report(stage, start + share * fraction)
 
 
-def holders(mesh: Mesh, lines: Lines, chains: Chains) -> Ints:
+def holders(mesh: Mesh, sides: Sides, polylines: BoundaryPolylines) -> Ints:
     """What holds each vertex, (n,): nothing, its segment, or that it is a corner of the domain."""
     held = np.full(len(mesh.points), FREE, np.int32)
-    held[chains.vertices] = lines.segments[chains.lines]
-    held[vertices_at(mesh, lines.corners)] = FIXED
+    held[polylines.vertices] = sides.segments[polylines.sides]
+    held[vertices_at(mesh, sides.corners)] = FIXED
     return held
 
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from adaptmesh.curves import Curve, Line
 from adaptmesh.domain.data import with_fields
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.periodic import periodic_pair, with_partners
-from adaptmesh.domain.periodic_corners import with_pair
+from adaptmesh.domain.periodic import with_partners
+from adaptmesh.domain.periodic_corners import with_pairs
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.types import Floats
 
@@ -24,17 +24,14 @@ def frozen_domain(domain: Domain, mesh: Mesh, names: Iterable[str]) -> Domain:
     """
     if isinstance(names, str):
         raise TypeError(f"frozen={names!r}: give a list of names, [{names!r}]")
-    names = with_partners(domain, names)
+    names = with_partners(domain.periodic, names)
     numbers = [domain.tag_named(name) for name in names]
     edges = {name: mesh.points[mesh.edges_named(name)] for name in names}
     rest = ~np.isin(domain.segment_tags, numbers)
     build = _of_curves if domain.curved.curves else _of_segments
     out = build(domain, edges, rest).with_frozen(*names)
     out = with_fields(out, corners_found=domain.corners_found)
-    for pair in domain.periodic:
-        tied = periodic_pair(out, pair.first, pair.second, pair.motion, pair.tolerance)
-        out = with_pair(out, tied)
-    return out
+    return with_pairs(out, domain.periodic)
 
 
 def _of_segments(domain: Domain, edges: dict[str, Floats], rest: NDArray[np.bool_]) -> Domain:

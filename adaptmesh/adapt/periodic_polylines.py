@@ -1,8 +1,8 @@
-"""Rows of a mesh that are cut together: one alone, or two that periodic boundaries tie.
+"""Vertices of boundary polylines that may stay: all, or where sides are periodic those of both.
 
 ::
 
-    a---o---o-x-o-------b        A row, and the row of its image. Anchors (o, and the ends) are
+    a---o---o-x-o-------b        A polyline, and that of its image. Anchors (o, and the ends) are
     :   :   :   :       :        vertices that both have; x has no image, and cannot stay. An edge
     a'--o---o---o-------b'       between anchors is as long as the longer of its two sides.
 """
@@ -12,78 +12,78 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from adaptmesh import ragged
 from adaptmesh.boundary.edge_lengths import straight_lengths
-from adaptmesh.domain.side import Lines
-from adaptmesh.mesh.boundary_polylines import Chains
-from adaptmesh.types import Floats, Index
+from adaptmesh.domain.side import Sides
+from adaptmesh.mesh.boundary_polylines import BoundaryPolylines
+from adaptmesh.types import Bools, Floats, Index
 from metrics import ControlSpace
 
 SAME = 1e-6
-"""Places are the same if they differ by less than this share of the way to the next place."""
+"""Parameters are the same if they differ by less than this share of the way to the next one."""
 
 
 @dataclass(frozen=True)
-class Strands:
-    """All anchors, strand after strand, each in order along its (first) line.
+class Anchors:
+    """All anchors, side after side, in order along each; of two periodic sides along the first.
 
     Attributes
     ----------
-    line : (c,) array of int
-        The line of each.
+    side : (c,) array of int
+        The side of each.
     at : (c,) array of int
-        Its number in the rows of `Chains`.
+        Its number in `BoundaryPolylines.vertices`.
     image : (c,) array of int
-        That of its image, -1 where the line has no tie.
+        That of its image, -1 where the side is not periodic.
     """
 
-    line: Index
+    side: Index
     at: Index
     image: Index
 
     @classmethod
-    def of(cls, chains: Chains, lines: Lines) -> Strands:
-        """The strands of the rows of a mesh."""
-        line = chains.lines
-        image, is_anchor = np.full(len(line), -1), np.ones(len(line), bool)
-        for i, tie in lines.ties.items():
-            if tie.line < i:
+    def of(cls, polylines: BoundaryPolylines, sides: Sides) -> Anchors:
+        """The anchors of the polylines of a mesh."""
+        side = polylines.sides
+        image, is_anchor = np.full(len(side), -1), np.ones(len(side), bool)
+        for i, other in sides.images.items():
+            if other.side < i:
                 continue
-            mine, theirs = (np.arange(*chains.first[[k, k + 1]]) for k in (i, tie.line))
-            k = same_places(lines.images(i, chains.places[mine]), chains.places[theirs])
+            mine, theirs = (np.arange(*polylines.first[[k, k + 1]]) for k in (i, other.side))
+            k = same_parameters(sides.image(i, polylines.u[mine]), polylines.u[theirs])
             image[mine] = theirs[k]
             is_anchor[mine], is_anchor[theirs] = k >= 0, False
         at = np.flatnonzero(is_anchor)
-        return cls(line[at], at, image[at])
+        return cls(side[at], at, image[at])
 
     @property
     def starts(self) -> Index:
         """The anchors at which edges start, (e,); each ends at the next anchor."""
-        return np.flatnonzero(np.diff(self.line) == 0)
+        return ragged.starts_of_pairs(self.side)
 
-    def may_stay(self, n: int) -> NDArray[np.bool_]:
-        """Which of the n entries of rows are anchors, or images of anchors."""
+    def may_stay(self, n: int) -> Bools:
+        """Which of the n vertices of polylines are anchors, or images of anchors."""
         out = np.zeros(n, bool)
         out[self.at] = out[self.image[self.image >= 0]] = True
         return out
 
-    def lengths(self, points: Floats, field: ControlSpace) -> Floats:
-        """The length of each edge between anchors, (e,); `points` are those of the rows."""
+    def lengths(self, points: Floats, metric: ControlSpace) -> Floats:
+        """The length of each edge between anchors, (e,); `points` are those of the polylines."""
         a = self.starts
         ours = np.stack([self.at[a], self.at[a + 1]], axis=1)
         theirs = np.stack([self.image[a], self.image[a + 1]], axis=1)
-        tied = theirs[:, 0] >= 0
-        length = straight_lengths(points, np.concatenate([ours, theirs[tied]]), field)
+        periodic = theirs[:, 0] >= 0
+        length = straight_lengths(points, np.concatenate([ours, theirs[periodic]]), metric)
         out, other = length[: len(a)], length[len(a) :]
-        out[tied] = np.maximum(out[tied], other)
+        out[periodic] = np.maximum(out[periodic], other)
         return out
 
 
-def same_places(places: Floats, others: Floats) -> Index:
-    """For each place the number of the same one of others, ascending, or -1."""
+def same_parameters(u: Floats, others: Floats) -> Index:
+    """For each parameter the number of the same one of others, ascending, or -1."""
     gap = np.diff(others)
     room = SAME * np.minimum(np.append(gap, np.inf), np.append(np.inf, gap))
-    k = np.searchsorted(others, places).clip(1, len(others) - 1)
-    k = np.where(places - others[k - 1] < others[k] - places, k - 1, k)
-    return np.where(np.abs(places - others[k]) <= room[k], k, -1)
+    k = np.searchsorted(others, u).clip(1, len(others) - 1)
+    k = np.where(u - others[k - 1] < others[k] - u, k - 1, k)
+    return np.where(np.abs(u - others[k]) <= room[k], k, -1)

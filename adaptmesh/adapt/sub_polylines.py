@@ -1,4 +1,4 @@
-"""Where rows of edges are to be cut anew: around edges that are not unit."""
+"""Which parts of boundary polylines are to be cut again: around edges that are not unit."""
 
 from __future__ import annotations
 
@@ -8,49 +8,49 @@ from adaptmesh.types import Bools, Floats, Index
 
 UNIT = (float(np.sqrt(0.5)) * (1 - 1e-9), float(np.sqrt(2)) * (1 + 1e-9))
 
-# A stretch that cannot be cut into parts this near to unit takes in a neighbour, so many times.
+# What cannot be cut into parts this near to unit takes in a neighbouring edge, so many times.
 GOOD = (0.8, 1.25)
-MOST_NEIGHBOURS = 4
+MAX_NEIGHBOURS = 4
 
 BETTER = 0.9
 """With as many edges that are not unit, squares of logarithms of lengths are to fall below this."""
 
 
-def stretches_of(line: Index, lengths: Floats, is_frozen: Bools) -> Index:
-    """Stretches as ranges of edges, (s, 2): from the first on, the second not included.
+def ranges_to_cut(side: Index, lengths: Floats, is_frozen: Bools) -> Index:
+    """Ranges of edges, (r, 2): from the first on, the second not included.
 
     Parameters
     ----------
-    line : (e,) array of int
-        The line of each edge, ascending; those of one line are in order along it.
+    side : (e,) array of int
+        The side of each edge, ascending; those of one side are in order along it.
     lengths : (e,) array
-    is_frozen : (l,) array of bool
-        Lines that are left alone.
+    is_frozen : (s,) array of bool
+        Sides that are left alone.
     """
     out, done = [], 0
-    for edge in np.flatnonzero(is_off(lengths) & ~is_frozen[line]).tolist():
+    for edge in np.flatnonzero(is_off(lengths) & ~is_frozen[side]).tolist():
         if edge < done:
             continue
-        least, most = np.searchsorted(line, [line[edge], line[edge] + 1]).tolist()
-        a, done = _stretch_around(edge, max(least, done), most, lengths)
+        low, high = np.searchsorted(side, [side[edge], side[edge] + 1]).tolist()
+        a, done = _range_around(edge, max(low, done), high, lengths)
         out.append((a, done))
     return np.array(out, np.intp).reshape(-1, 2)
 
 
-def _stretch_around(edge: int, least: int, most: int, lengths: Floats) -> tuple[int, int]:
-    """Edges [a, b) within [least, most) around one that is not unit, that cut into good parts."""
+def _range_around(edge: int, low: int, high: int, lengths: Floats) -> tuple[int, int]:
+    """Edges [a, b) within [low, high) around one that is not unit, that cut into good parts."""
 
     def badness(a: int, b: int) -> float:
         _, part = unit_parts(lengths[a:b].sum())
         return float(abs(np.log(part)))
 
     a, b = edge, edge + 1
-    for _ in range(MOST_NEIGHBOURS):
-        while b < most and is_off(lengths[b]):
+    for _ in range(MAX_NEIGHBOURS):
+        while b < high and is_off(lengths[b]):
             b += 1
         if GOOD[0] <= unit_parts(lengths[a:b].sum())[1] <= GOOD[1]:
             break
-        wider = [(a - 1, b)] * (a > least) + [(a, b + 1)] * (b < most)
+        wider = [(a - 1, b)] * (a > low) + [(a, b + 1)] * (b < high)
         if not wider:
             break
         a, b = min(wider, key=lambda w: badness(*w))

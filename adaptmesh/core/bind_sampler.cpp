@@ -38,18 +38,19 @@ nb::object lengths(const EdgeSampler& sampler) {
     return to_numpy(std::move(lengths), {n});
 }
 
+// What cuts every edge into unit pieces: shares of its length from its start, and the edge of each.
 nb::tuple cut_to_unit(const EdgeSampler& sampler) {
     std::vector<FieldPoint> cuts;
-    std::vector<Point> points;
+    std::vector<double> shares;
     std::vector<Index> edges;
     for (Index e = 0; e < sampler.edge_count(); ++e) {
         cuts.clear();
         sampler.cut(e, Index(unit_parts(sampler.lengths()[e])), cuts);
-        for (const FieldPoint& p : cuts) points.push_back(p.at);
+        for (const FieldPoint& p : cuts) shares.push_back(p.t);
         edges.insert(edges.end(), cuts.size(), e);
     }
     const std::size_t n = edges.size();
-    return nb::make_tuple(to_numpy(points), to_numpy(std::move(edges), {n}));
+    return nb::make_tuple(to_numpy(std::move(shares), {n}), to_numpy(std::move(edges), {n}));
 }
 
 }  // namespace
@@ -67,5 +68,5 @@ void bind_sampler(nb::module_& m) {
              "vertices, by far, that is TooManyVertices.")
         .def("lengths", &lengths)
         .def("cut", &cut_to_unit,
-             "Points that cut the edges into unit pieces, and the edge of each.");
+             "What cuts the edges into unit pieces: shares of an edge, and the edge of each.");
 }

@@ -40,6 +40,7 @@ inline double unit_parts(double length) {
 struct FieldPoint {
     Point at;
     Tensor metric;
+    double t;  // where on the edge, from 0 at its start to 1 at its end
 };
 
 class EdgeSampler {
@@ -279,9 +280,8 @@ class EdgeSampler {
     }
 
     FieldPoint point_in_piece(const Chord& p, double share) const {
-        const double s = share_in_piece(p, share);
-        return {point(p.edge, p.from.t + s * (p.to.t - p.from.t)),
-                metrics::log_mean(p.from.metric, p.to.metric, s)};
+        const double s = share_in_piece(p, share), t = p.from.t + s * (p.to.t - p.from.t);
+        return {point(p.edge, t), metrics::log_mean(p.from.metric, p.to.metric, s), t};
     }
 
     double longest_chord_;

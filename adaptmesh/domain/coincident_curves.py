@@ -8,7 +8,7 @@ import numpy as np
 
 from adaptmesh.curves import Curve
 
-from .paths import places_of
+from .joining import places_of
 
 _PLACES = np.array([0.25, 0.5, 0.75])  # where curves with the same ends are compared
 

@@ -62,10 +62,10 @@ class SomeSides(NamedTuple):
 def cubic_pieces(domain: DomainData, chosen: Bools) -> CubicPieces:
     """The pieces of some of the segments of a domain, chosen by number (n,)."""
     curved = domain.curved
-    straight = np.flatnonzero(chosen & (curved.segment_runs < 0))
+    straight = np.flatnonzero(chosen & (curved.segment_paths < 0))
     ends = domain.points[domain.segments[straight]]
     vectors = np.repeat(np.diff(ends, axis=1), 2, axis=1)
-    segments = np.flatnonzero(chosen & (curved.segment_runs >= 0))
+    segments = np.flatnonzero(chosen & (curved.segment_paths >= 0))
     if not len(segments):
         return CubicPieces(ends, vectors, straight, np.zeros(len(straight)))
     segment, p, d = _divided(domain, segments)
@@ -87,11 +87,11 @@ def _divided(domain: DomainData, segment: Index) -> tuple[Index, Floats, Floats]
 
     They are divided until they, and their chords, are as near to the curves as they must be.
     """
-    curved, runs = domain.curved, domain.curved.runs
+    curved, runs = domain.curved, domain.curved.paths
     extent = float(np.ptp(domain.points, axis=0).max())
     u = curved.segment_parameters[segment]
     for again in range(MOST_ROUNDS, -1, -1):
-        run, n = curved.segment_runs[segment].astype(np.intp), len(segment)
+        run, n = curved.segment_paths[segment].astype(np.intp), len(segment)
         part = u.mean(axis=1).astype(np.intp)
         p = np.stack([points_on(runs, run, u[:, i]) for i in (0, 1)], axis=1)
         d = np.stack([derivatives_of_parts(runs, run, part, u[:, i]) for i in (0, 1)], axis=1)

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
 
 from adaptmesh.errors import DomainError
-from adaptmesh.types import Bools, Floats, Ints
+from adaptmesh.types import Bools, Floats, Index, Ints
 from adaptmesh.value import Value, contents
 
-from .inscribed_polygon import Curved
-from .periodic import PeriodicPair
+from .inscribed_polygon import InscribedPolygon, sides_between
+from .periodic import PeriodicPair, with_images
+from .side import Sides
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,7 @@ class DomainData(Value):
     seeds : (s, 2) array
         A point in each part of a region.
     seed_regions : (s,) array of int32
-    curved : Curved
+    curved : InscribedPolygon
         Which of the points and segments lie on curves, and where.
     triangles, triangle_regions : (m, 3), (m,) arrays of int32
         Constrained Delaunay triangles of the points alone, and their regions.
@@ -87,7 +89,7 @@ class DomainData(Value):
     holes: Floats
     seeds: Floats
     seed_regions: Ints
-    curved: Curved
+    curved: InscribedPolygon
     triangles: Ints = field(default_factory=lambda: np.empty((0, 3), np.int32))
     triangle_regions: Ints = field(default_factory=lambda: np.empty(0, np.int32))
     pieces: Ints = field(default_factory=lambda: np.empty((0, 2), np.int32))
@@ -110,6 +112,24 @@ class DomainData(Value):
             known = ", ".join(map(repr, self.names)) or "none"
             raise DomainError(f"no boundary is named {name!r}; the names are: {known}")
         return self.names[name]
+
+    @cached_property
+    def all_sides(self) -> Sides:
+        """All lines from corner to corner, straight or curved, with what is known of each."""
+        sides = sides_between(
+            self.points,
+            self.pieces,
+            self.piece_segments,
+            self.segment_tags,
+            self.curved,
+            np.concatenate([self.holes, self.seeds]),
+        )
+        frozen = self.segment_is_frozen[sides.segments]
+        return with_images(replace(sides, is_frozen=frozen), self.periodic)
+
+    def sides_named(self, name: str) -> Index:
+        """The numbers in `all_sides` of those that bear a name, or a `DomainError`."""
+        return np.flatnonzero(self.all_sides.tags == self.tag_named(name))
 
     def region_of_label(self, labels: Ints) -> Ints:
         """Region numbers from what the core numbers by seed: 0 is no seed, i + 1 is seed i."""

@@ -25,9 +25,9 @@ from .frozen import domain_with_frozen
 from .given import Given
 from .inputs import ByLabel
 from .measures import area_of, segments_within
+from .motion import Motion
 from .names import domain_with_names
 from .naming import Chosen
-from .periodic import Motion
 from .periodic_corners import domain_with_pair
 
 

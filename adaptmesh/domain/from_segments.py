@@ -14,7 +14,7 @@ from adaptmesh.types import Floats, Ints
 from .data import DomainData, with_fields
 from .given import Given
 from .inputs import Inside, Label, checked_names, checked_segments
-from .inscribed_polygon import Curved
+from .inscribed_polygon import InscribedPolygon
 from .messages import fault_text
 from .named_sides import sides_of_domain
 from .naming import Selector, chosen_tags, split_names
@@ -28,7 +28,9 @@ def domain_of_segments(given: Given) -> DomainData:
     numbers, selectors = split_names(given.names)
     names, tags = checked_names(numbers, n, "segment", given.tags)
     inside = Inside.checked(given.holes, given.regions, given.region_tags)
-    domain = enclosed(points, segments, tags, names, inside, Curved.nothing(len(points), n))
+    domain = enclosed(
+        points, segments, tags, names, inside, InscribedPolygon.nothing(len(points), n)
+    )
     return with_chosen_names(domain, selectors)
 
 
@@ -38,7 +40,7 @@ def enclosed(
     tags: Ints,
     names: Mapping[str, int],
     inside: Inside,
-    curved: Curved,
+    curved: InscribedPolygon,
 ) -> DomainData:
     """Triangulate what segments enclose, or raise a `DomainError` that says what is wrong."""
     domain = DomainData(

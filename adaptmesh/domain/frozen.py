@@ -28,7 +28,7 @@ def domain_with_frozen(domain: D, names: Sequence[str], segments: ArrayLike | No
         raise DomainError(f"segment {unknown[0]}: they are numbered 0 to {len(frozen) - 1}")
     frozen[numbers] = True
     frozen |= np.isin(domain.segment_tags, [domain.tag_named(name) for name in names])
-    curved = np.flatnonzero(frozen & (domain.curved.segment_runs >= 0))
+    curved = np.flatnonzero(frozen & (domain.curved.segment_paths >= 0))
     if len(curved):
         raise DomainError(
             f"{segment_text(domain, int(curved[0]))} is curved, so that nothing says where its "

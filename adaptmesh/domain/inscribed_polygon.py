@@ -8,18 +8,19 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh._core import orient2d
 from adaptmesh.checks import LARGEST, checked_points, read_only
 from adaptmesh.curves import Curve
 from adaptmesh.errors import DomainError
-from adaptmesh.types import Floats, Ints
+from adaptmesh.types import Bools, Floats, Index, Ints
 from adaptmesh.value import Value
 
 from .inputs import Inside
-from .paths import Run, are_near, join, length_of, name_of_curve, points_on
-from .polyline import Surroundings, chords_along
+from .joining import are_near, join, length_of, name_of_curve
+from .paths import Path, points_on
+from .polyline import polylines_along
+from .side import SidePoints, Sides, in_canonical_direction
 
 JOINED = 1e-12
 JOINED_PLACES = 8
@@ -48,21 +49,21 @@ GAUSS = np.polynomial.legendre.leggauss(10)
 
 
 @dataclass(frozen=True, eq=False)
-class Curved(Value):
-    """Which points and segments of a domain are on curves.
+class InscribedPolygon(Value):
+    """Which points and segments of a domain are on curves, of which they are an inscribed polygon.
 
     Attributes
     ----------
     curves : tuple of Curve
         As they were given; none for a domain of points and segments.
-    runs : tuple of Run
+    paths : tuple of Path
         What is curved, from corner to corner.
     segment_curves : (k,) array of int32
         The curve that each segment of the domain lies on or is a chord of; -1 for none.
-    segment_runs : (k,) array of int32
-        The run that it is a chord of; -1 if it is straight itself.
+    segment_paths : (k,) array of int32
+        The path that it is a chord of; -1 if it is straight itself.
     segment_parameters : (k, 2) array
-        The parameters of its ends on the run.
+        The parameters of its ends on the path.
     is_vertex : (n,) array of bool
         Whether a point of the domain is a vertex of every mesh; the others only hold the chords.
     corner_angle, join_tolerance : float
@@ -70,16 +71,16 @@ class Curved(Value):
     """
 
     curves: tuple[Curve, ...]
-    runs: tuple[Run, ...]
+    paths: tuple[Path, ...]
     segment_curves: Ints
-    segment_runs: Ints
+    segment_paths: Ints
     segment_parameters: Floats
-    is_vertex: NDArray[np.bool_]
+    is_vertex: Bools
     corner_angle: float = 0.0
     join_tolerance: float = 0.0
 
     @classmethod
-    def nothing(cls, n_points: int, n_segments: int) -> Curved:
+    def nothing(cls, n_points: int, n_segments: int) -> InscribedPolygon:
         """Of a domain of points and segments."""
         none = read_only(np.full(n_segments, -1, np.int32))
         parameters = read_only(np.zeros((n_segments, 2)))
@@ -89,44 +90,93 @@ class Curved(Value):
         """The curve of a segment in words."""
         return name_of_curve(self.curves, int(self.segment_curves[segment]))
 
-    def areas_beside(self, run: NDArray[np.integer], u: Floats) -> Floats:
-        """Areas between chords, given by run (k,) and parameters (k, 2), and their curves.
+    def areas_beside(self, path: Index, u: Floats) -> Floats:
+        """Areas between chords, given by path (k,) and parameters (k, 2), and their curves.
 
-        Chords of a run may not overlap. Positive where the curve bends to the right of its chord.
+        Chords of a path may not overlap. Positive where the curve bends to the right of its chord.
         """
-        out = np.zeros(len(run))
-        order = np.lexsort((u[:, 0], run))
-        first = np.flatnonzero(np.diff(run[order], prepend=-1))
+        out = np.zeros(len(path))
+        order = np.lexsort((u[:, 0], path))
+        first = np.flatnonzero(np.diff(path[order], prepend=-1))
         for mine in np.split(order, first)[1:]:
-            out[mine] = _areas_beside(self.runs[run[mine[0]]], u[mine])
+            out[mine] = _areas_beside(self.paths[path[mine[0]]], u[mine])
         return out
 
-    def chords_within(self, tolerance: float) -> tuple[NDArray[np.integer], Floats]:
-        """Chords, run (k,) and parameters (k, 2), that are this near to their curves."""
-        chosen = self.segment_runs >= 0
-        run: NDArray[np.integer] = self.segment_runs[chosen]
+    def chords_within(self, tolerance: float) -> tuple[Index, Floats]:
+        """Chords, path (k,) and parameters (k, 2), that are this near to their curves."""
+        chosen = self.segment_paths >= 0
+        path: Index = self.segment_paths[chosen]
         u = self.segment_parameters[chosen]
         t = np.linspace(0, 1, OUTLINE_LOOKS + 1)
         while True:
             at = u[:, :1] + t * (u[:, 1:] - u[:, :1])
-            p = points_on(self.runs, np.repeat(run, len(t)), at.ravel()).reshape(-1, len(t), 2)
+            p = points_on(self.paths, np.repeat(path, len(t)), at.ravel()).reshape(-1, len(t), 2)
             d = p[:, -1] - p[:, 0]
             off = p - p[:, :1]
             height = np.abs(off[..., 0] * d[:, None, 1] - off[..., 1] * d[:, None, 0]).max(axis=1)
             parts = np.ceil(np.sqrt(height / np.hypot(*d.T) / tolerance)).clip(1).astype(np.intp)
             if (parts == 1).all():
-                return run, u
+                return path, u
             first = np.repeat(np.cumsum(parts) - parts, parts)
             k = np.arange(parts.sum()) - first
             start = np.repeat(u[:, 0], parts) + k * np.repeat((u[:, 1] - u[:, 0]) / parts, parts)
             end = np.where(
                 k == np.repeat(parts, parts) - 1, np.repeat(u[:, 1], parts), np.roll(start, -1)
             )
-            run, u = np.repeat(run, parts), np.stack([start, end], axis=1)
+            path, u = np.repeat(path, parts), np.stack([start, end], axis=1)
 
 
-def _areas_beside(line: Run, u: Floats) -> Floats:
-    """Areas between chords (k, 2) of a run, in order, and the curve.
+def sides_between(
+    points: Floats,
+    pieces: Ints,
+    piece_segments: Ints,
+    tags: Ints,
+    curved: InscribedPolygon,
+    loose: Floats,
+) -> Sides:
+    """The sides of a domain.
+
+    Parameters
+    ----------
+    points, pieces, piece_segments : arrays
+        See `Domain`.
+    tags : (k,) array of int32
+        Of its segments.
+    curved : InscribedPolygon
+    loose : (m, 2) array
+        Seeds of holes and regions.
+    """
+    on_path, segments = curved.segment_paths >= 0, piece_segments
+    straight = segments[~on_path[segments]]
+    number = (np.cumsum(curved.is_vertex) - 1).astype(np.int32)
+    order = np.flatnonzero(on_path)[
+        np.lexsort((curved.segment_parameters[on_path, 0], curved.segment_paths[on_path]))
+    ]
+    each = np.split(order, np.flatnonzero(np.diff(curved.segment_paths[order])) + 1)
+    inscribed = [
+        np.append(curved.segment_parameters[mine, 0], curved.segment_parameters[mine[-1], 1])
+        for mine in each[: len(curved.paths)]
+    ]
+    first = np.array([mine.min() for mine in each[: len(curved.paths)]], np.int32)
+    vertices = points[curved.is_vertex]
+    ends = in_canonical_direction(vertices, number[pieces[~on_path[segments]]])
+    segments = np.concatenate([straight, first]).astype(np.int32)
+    return Sides(
+        vertices,
+        np.concatenate([ends, _ends_of(curved.paths)]),
+        curved.paths,
+        loose,
+        curved.curves,
+        curved.segment_curves[straight],
+        tuple(inscribed),
+        segments,
+        tags[segments],
+        np.zeros(len(segments), bool),
+    )
+
+
+def _areas_beside(line: Path, u: Floats) -> Floats:
+    """Areas between chords (k, 2) of a path, in order, and the curve.
 
     By Gauss's quadrature of (p - p0) x dp / 2, p0 where the chord begins, on halves of what is
     between knots of the curve. Joining may have moved vertices off the ends of curves::
@@ -167,7 +217,7 @@ class Skeleton(NamedTuple):
     points: Floats
     segments: Ints
     segment_tags: Ints
-    curved: Curved
+    curved: InscribedPolygon
 
 
 def skeleton_of(
@@ -196,39 +246,50 @@ def skeleton_of(
     isolated = isolated[~are_near(isolated, joined.corners, join_tolerance)]
     vertices = np.concatenate([joined.corners, isolated])
     lines, line_curves = _divided(vertices, joined.lines, joined.line_curves)
-    around = Surroundings(
-        np.concatenate([vertices, inside.holes, inside.seeds]),
-        len(vertices),
-        lines,
+    sides = Sides(
+        vertices,
+        np.concatenate([lines, _ends_of(joined.paths)]),
+        joined.paths,
+        np.concatenate([inside.holes, inside.seeds]),
+        tuple(curves),
         line_curves,
-        tuple(curves),
     )
-    points = vertices
-    run, u = np.empty(0, np.int32), np.empty((0, 2))
-    segments = lines
-    if joined.runs:
-        first = [np.linspace(0, r.length, FIRST_CHORDS * len(r.parts) + 1) for r in joined.runs]
-        chords = chords_along(joined.runs, first, TURN, around)
-        points, run, u = chords.points, chords.run, chords.u
-        segments = np.concatenate([lines, chords.ends])
-    owners = np.concatenate(
-        [
-            line_curves,
-            [joined.runs[r].curve_at(m) for r, m in zip(run, u.mean(axis=1), strict=True)],
-        ]
-    ).astype(np.int32)
     n = len(lines)
-    curved = Curved(
+    path: Index = np.empty(0, np.intp)
+    points, u = vertices, np.empty((0, 2))
+    segments, owners = lines, line_curves
+    if joined.paths:
+        polygon = polylines_along(sides, _first_points(sides), TURN)
+        points, path, u = polygon.points, polygon.side[n:] - n, polygon.u[n:]
+        segments = np.concatenate([lines, polygon.ends[n:]])
+        on_paths = zip(path.tolist(), u.mean(axis=1).tolist(), strict=True)
+        curved = [joined.paths[p].curve_at(middle) for p, middle in on_paths]
+        owners = np.concatenate([line_curves, curved])
+    inscribed = InscribedPolygon(
         tuple(curves),
-        joined.runs,
-        read_only(owners),
-        read_only(np.concatenate([np.full(n, -1, np.int32), run])),
+        joined.paths,
+        read_only(owners.astype(np.int32)),
+        read_only(np.concatenate([np.full(n, -1), path]).astype(np.int32)),
         read_only(np.concatenate([np.zeros((n, 2)), u])),
         read_only(np.arange(len(points)) < len(vertices)),
         corner_angle,
         join_tolerance,
     )
-    return Skeleton(points, read_only(segments), read_only(tags[owners]), curved)
+    return Skeleton(
+        points, read_only(segments.astype(np.int32)), read_only(tags[owners]), inscribed
+    )
+
+
+def _ends_of(paths: Sequence[Path]) -> Ints:
+    """The corners at the ends of paths, (p, 2)."""
+    return np.array([path.ends for path in paths], np.int32).reshape(-1, 2)
+
+
+def _first_points(sides: Sides) -> SidePoints:
+    """Points on paths that are looked at first, `FIRST_CHORDS` on each curve."""
+    each = [np.linspace(0, p.length, FIRST_CHORDS * len(p.parts) + 1)[1:-1] for p in sides.paths]
+    side = np.repeat(np.arange(sides.n_straight, len(sides)), [len(u) for u in each])
+    return SidePoints(side, np.concatenate(each))
 
 
 def _check_curves(curves: Sequence[Curve]) -> list[Floats]:

@@ -28,8 +28,8 @@ def _area_beyond_chords(domain: DomainData) -> float:
     """The area between the boundary and its chords, negative where the curve is inside."""
     curved = domain.curved
     boundary = domain.piece_segments[domain.piece_is_boundary]
-    segments = boundary[curved.segment_runs[boundary] >= 0]
-    areas = curved.areas_beside(curved.segment_runs[segments], curved.segment_parameters[segments])
+    segments = boundary[curved.segment_paths[boundary] >= 0]
+    areas = curved.areas_beside(curved.segment_paths[segments], curved.segment_parameters[segments])
     return float(np.sum(np.where(inside_is_left_of(domain, segments), areas, -areas)))
 
 
@@ -52,11 +52,11 @@ def segments_within(domain: DomainData, tolerance: float, names: Iterable[str] |
     asked = np.ones(len(domain.segments), bool)
     if names is not None:
         asked = np.isin(domain.segment_tags, [domain.tag_named(name) for name in names])
-    straight = domain.points[domain.segments[asked & (curved.segment_runs < 0)]]
-    if not curved.runs:
+    straight = domain.points[domain.segments[asked & (curved.segment_paths < 0)]]
+    if not curved.paths:
         return straight
     run, u = curved.chords_within(tolerance)
-    mine = np.isin(run, curved.segment_runs[asked])
+    mine = np.isin(run, curved.segment_paths[asked])
     run, u = run[mine], u[mine]
-    ends = points_on(curved.runs, np.repeat(run, 2), u.ravel()).reshape(-1, 2, 2)
+    ends = points_on(curved.paths, np.repeat(run, 2), u.ravel()).reshape(-1, 2, 2)
     return np.concatenate([straight, ends])

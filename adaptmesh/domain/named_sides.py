@@ -12,9 +12,9 @@ from adaptmesh.types import Floats, Ints
 
 from .data import DomainData
 from .inputs import ByLabel, checked_names, numbered
+from .joining import name_of_curve
 from .messages import segment_text
 from .naming import LOOKS, Chosen, Sides, chosen_tags, split_names, straight_sides
-from .paths import name_of_curve
 
 
 def sides_of_domain(domain: DomainData) -> Sides:

@@ -1,44 +1,33 @@
-"""Curves joined end to end: where the corners are, and the runs of curves between them.
-
-::
-
-        curve 0      curve 1           Corners are where other than two ends meet, the name changes,
-      A ------- . ~~~~~~~~~~ B         or the direction does; A and B here. Between them a run is
-                 \\  smooth             one smooth line with a parameter of its own, whatever curves
-                  joint                it is made of.
-"""
+"""Curves joined smoothly, end to end: one line with one parameter."""
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.curves import Curve
-from adaptmesh.errors import DomainError
-from adaptmesh.topology import components
-from adaptmesh.types import Floats, Index, Ints
+from adaptmesh.types import Floats, Index
 from adaptmesh.value import Value
 
 from .inputs import rows_of_each
 
-LOOKS = 8
-"""Steps by which the length of a piece of a curve is measured."""
+SAMPLES = 64
+"""On each part of a path, among which the place nearest to a point is looked for."""
+
+NEWTON_STEPS = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Run(Value):
+class Path(Value):
     """Curves from corner to corner, with no corner between.
 
     Attributes
     ----------
     parts : tuple of Curve
-        End to end; the run has the parameter u = k + t on part k.
+        End to end; the path has the parameter u = k + t on part k.
     curves : tuple of int
         The curve, of those that the domain was given, that each part belongs to.
     ends : (int, int)
@@ -65,7 +54,7 @@ class Run(Value):
         return np.sort(np.concatenate([joints, *(k + p.knots for k, p in enumerate(self.parts))]))
 
     def curve_at(self, u: float) -> int:
-        """The curve that the run follows at u."""
+        """The curve that the path follows at u."""
         return self.curves[min(int(u), len(self.parts) - 1)]
 
     def point(self, u: Floats) -> Floats:
@@ -87,6 +76,20 @@ class Run(Value):
         """Derivatives by u (n, 2) at u (n,) of these parts, up to and including their ends."""
         return self._of_parts(Curve.derivative, part, u)
 
+    def nearest(self, points: Floats) -> Floats:
+        """The parameters (n,) nearest to points (n, 2) that lie on the path but for rounding.
+
+        The nearest of many samples, then Newton's steps for (p(u) - x) . p'(u) = 0, without the
+        second derivative, as the distance is nearly zero.
+        """
+        samples = np.linspace(0, self.length, int(SAMPLES * self.length) + 1)
+        at = self.point(samples)
+        u = samples[((points[:, None] - at) ** 2).sum(axis=2).argmin(axis=1)]
+        for _ in range(NEWTON_STEPS):
+            off, d = points - self.point(u), self.derivative(u)
+            u = np.clip(u + (off * d).sum(axis=1) / (d * d).sum(axis=1), 0, self.length)
+        return u
+
     def _parts_at(self, u: Floats) -> Index:
         return np.clip(u.astype(np.intp), 0, len(self.parts) - 1)
 
@@ -99,256 +102,28 @@ class Run(Value):
         return out
 
 
-def points_on(runs: Sequence[Run], run: Index, u: Floats) -> Floats:
-    """Points (k, 2) at the parameters u (k,) of these runs (k,)."""
-    return _each(Run.point, runs, run, u)
+def points_on(paths: Sequence[Path], path: Index, u: Floats) -> Floats:
+    """Points (k, 2) at the parameters u (k,) of these paths (k,)."""
+    return _each(Path.point, paths, path, u)
 
 
-def derivatives_on(runs: Sequence[Run], run: Index, u: Floats) -> Floats:
-    """Derivatives (k, 2) at the parameters u (k,) of these runs (k,)."""
-    return _each(Run.derivative, runs, run, u)
+def derivatives_on(paths: Sequence[Path], path: Index, u: Floats) -> Floats:
+    """Derivatives (k, 2) at the parameters u (k,) of these paths (k,)."""
+    return _each(Path.derivative, paths, path, u)
 
 
-def derivatives_of_parts(runs: Sequence[Run], run: Index, part: Index, u: Floats) -> Floats:
-    """Derivatives (k, 2) of these parts of runs (k,) at u (k,)."""
+def derivatives_of_parts(paths: Sequence[Path], path: Index, part: Index, u: Floats) -> Floats:
+    """Derivatives (k, 2) of these parts of paths (k,) at u (k,)."""
     out = np.empty((len(u), 2))
-    order = np.argsort(run, kind="stable")
-    for mine in np.split(order, np.flatnonzero(np.diff(run[order])) + 1):
-        r = int(run[mine[0]])
-        out[mine] = runs[r].derivative_of_part(part[mine], u[mine])
+    for p, mine in rows_of_each(path).items():
+        out[mine] = paths[p].derivative_of_part(part[mine], u[mine])
     return out
 
 
 def _each(
-    values: Callable[[Run, Floats], Floats], runs: Sequence[Run], run: Index, u: Floats
+    values: Callable[[Path, Floats], Floats], paths: Sequence[Path], path: Index, u: Floats
 ) -> Floats:
     out = np.empty((len(u), 2))
-    for r, mine in rows_of_each(run).items():
-        out[mine] = values(runs[r], u[mine])
+    for p, mine in rows_of_each(path).items():
+        out[mine] = values(paths[p], u[mine])
     return out
-
-
-class Piece(NamedTuple):
-    """What lies between two neighbouring kinks of a curve; or a curve that has none."""
-
-    curve: int
-    t0: float
-    t1: float
-
-
-class Joined(NamedTuple):
-    """Corners (n, 2), straight lines between them (k, 2), the curve of each, (k,), and runs."""
-
-    corners: Floats
-    lines: Ints
-    line_curves: Ints
-    runs: tuple[Run, ...]
-
-
-def join(
-    curves: Sequence[Curve], tags: Ints, corner_angle: float, tolerance: float, stops: Floats
-) -> Joined:
-    """Find corners, straight lines and runs.
-
-    Parameters
-    ----------
-    curves : sequence of Curve
-    tags : (k,) array of int
-        The number of the name of each; a run has one name.
-    corner_angle : float
-        Where a line turns by more than this, in degrees, is a corner.
-    tolerance : float
-        Ends nearer than this are one. What is itself no longer than that, and begins and ends in
-        one place, is left out.
-    stops : (m, 2) array
-        Where ends are corners, be they smooth or not.
-    """
-    pieces = _pieces(curves)
-    ends = np.stack([_ends(curves, pieces, 0), _ends(curves, pieces, 1)])
-    place = places_of(ends.reshape(-1, 2), tolerance).reshape(2, -1)
-    stays = np.array(
-        [
-            not _vanishes(curves, piece, start, end, tolerance)
-            for piece, (start, end) in zip(pieces, place.T.tolist(), strict=True)
-        ]
-    )
-    if not stays.any():
-        raise DomainError(
-            f"all curves are shorter than join_tolerance={tolerance:g}: choose a smaller one"
-        )
-    pieces = list(itertools.compress(pieces, stays))
-    ends = ends[:, stays].reshape(-1, 2)
-    number = np.unique(place[:, stays], return_inverse=True)[1].ravel()
-    node = number.tolist()
-    at: list[list[int]] = [[] for _ in range(number.max() + 1)]
-    for e, v in enumerate(node):
-        at[v].append(e)
-    stopped = set(number[are_near(ends, stops, tolerance)].tolist())
-    is_corner = [
-        v in stopped or _is_corner(curves, tags, pieces, found, corner_angle)
-        for v, found in enumerate(at)
-    ]
-    chains = _chains(node, at, is_corner, len(pieces))
-
-    corner_number = np.cumsum(is_corner) - 1
-    first = np.array([found[0] for found in at])[np.array(is_corner)]
-    corners = ends[first]
-    lines, owners, runs = [], [], []
-    for chain in chains:
-        a, b = (
-            int(corner_number[node[chain[0]]]),
-            int(corner_number[node[_other(chain[-1], len(pieces))]]),
-        )
-        piece = pieces[chain[0] % len(pieces)]
-        if len(chain) == 1 and curves[piece.curve].is_straight:
-            lines.append((a, b))
-            owners.append(piece.curve)
-            continue
-        parts = tuple(_part(curves, pieces, e) for e in chain)
-        owner = tuple(pieces[e % len(pieces)].curve for e in chain)
-        runs.append(Run(parts, owner, (a, b), corners[a], corners[b]))
-    return Joined(
-        corners,
-        np.array(lines, np.int32).reshape(-1, 2),
-        np.array(owners, np.int32),
-        tuple(runs),
-    )
-
-
-def _pieces(curves: Sequence[Curve]) -> list[Piece]:
-    out = []
-    for i, curve in enumerate(curves):
-        t = [0.0, *curve.breaks.tolist(), 1.0]
-        out += [Piece(i, t0, t1) for t0, t1 in itertools.pairwise(t)]
-    return out
-
-
-def _vanishes(
-    curves: Sequence[Curve], piece: Piece, start: int, end: int, tolerance: float
-) -> bool:
-    """Whether nothing is left of a piece, as its ends, of these numbers, are one place.
-
-    A closed curve stays, be it ever so small; so does one that comes back from far away.
-    """
-    curve = curves[piece.curve]
-    if start != end or (curve.is_closed and piece.t1 - piece.t0 == 1):
-        return False
-    length = length_of(curve, piece.t0, piece.t1)
-    if length <= tolerance:
-        return True
-    if not curve.is_straight:
-        return False
-    (x0, y0), (x1, y1) = curve.point(np.array([piece.t0, piece.t1])).tolist()
-    raise DomainError(
-        f"{name_of_curve(curves, piece.curve)} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}) is "
-        f"{length:.3g} long, but both its ends are one place with join_tolerance={tolerance:g}, as "
-        "shorter curves lie between them: choose a smaller join_tolerance"
-    )
-
-
-def length_of(curve: Curve, t0: float = 0.0, t1: float = 1.0) -> float:
-    """The length of a piece of a curve, about, by that of chords."""
-    p = curve.point(np.linspace(t0, t1, LOOKS + 1))
-    return float(np.hypot(*np.diff(p, axis=0).T).sum())
-
-
-def _ends(curves: Sequence[Curve], pieces: list[Piece], which: int) -> Floats:
-    """Where the pieces begin or end, (n, 2)."""
-    out = []
-    for i, found in itertools.groupby(pieces, key=lambda piece: piece.curve):
-        t = np.array([piece.t1 if which else piece.t0 for piece in found])
-        if curves[i].is_closed:
-            t[t == 1] = 0  # it ends exactly where it began
-        out.append(curves[i].point(t))
-    return np.concatenate(out)
-
-
-def name_of_curve(curves: Sequence[Curve], i: int) -> str:
-    """A curve in words."""
-    return f"curve {i} ({curves[i]!r})"
-
-
-def places_of(ends: Floats, tolerance: float) -> NDArray[np.intp]:
-    """The number of the place of each end; ends within the tolerance share one."""
-    from scipy.spatial import KDTree
-
-    pairs = KDTree(ends).query_pairs(tolerance, output_type="ndarray")
-    return components(len(ends), pairs)
-
-
-def are_near(points: Floats, places: Floats, tolerance: float) -> NDArray[np.bool_]:
-    """Which of the points (n, 2) are within the tolerance of one of the places (m, 2)."""
-    from scipy.spatial import KDTree
-
-    if not len(places):
-        return np.zeros(len(points), bool)
-    distance, _ = KDTree(places).query(points)
-    return distance <= tolerance
-
-
-# Ends are numbered: e < n is where piece e begins, e >= n where piece e - n ends. To walk a piece
-# from an end is to come out at the other one.
-
-
-def _other(end: int, n: int) -> int:
-    return end + n if end < n else end - n
-
-
-def _part(curves: Sequence[Curve], pieces: list[Piece], end: int) -> Curve:
-    """The piece walked from this end, as a curve."""
-    i, t0, t1 = pieces[end % len(pieces)]
-    if end >= len(pieces):
-        t0, t1 = t1, t0
-    return curves[i] if (t0, t1) == (0, 1) else curves[i].part(t0, t1)
-
-
-def _is_corner(
-    curves: Sequence[Curve], tags: Ints, pieces: list[Piece], found: list[int], angle: float
-) -> bool:
-    if len(found) != 2:
-        return True
-    p, q = (pieces[e % len(pieces)] for e in found)
-    if tags[p.curve] != tags[q.curve] or (
-        curves[p.curve].is_straight and curves[q.curve].is_straight
-    ):
-        return True
-    t = [p.t1 if found[0] >= len(pieces) else p.t0, q.t1 if found[1] >= len(pieces) else q.t0]
-    if any(0 < s < 1 for s in t):  # a kink
-        return True
-    u, v = (_direction(_part(curves, pieces, e)) for e in found)
-    turn = np.arctan2(abs(u[0] * v[1] - u[1] * v[0]), -(u @ v))
-    return bool(np.degrees(turn) > angle)
-
-
-def _direction(curve: Curve) -> Floats:
-    """The unit vector in which a curve leaves its start, whatever its speed there."""
-    out = curve.derivative(0.0)[0]
-    step = curve.point([1e-4])[0] - curve.start
-    if np.hypot(*out) < 1e-3 * np.hypot(*step) / 1e-4:  # stands still there, or nearly
-        out = step
-    norm = np.hypot(*out)
-    return out / norm if norm else np.array([1.0, 0.0])
-
-
-def _chains(node: list[int], at: list[list[int]], is_corner: list[bool], n: int) -> list[list[int]]:
-    """Walks from corner to corner, each as the ends at which its pieces are entered.
-
-    A closed line without a corner gets one: where the first of its pieces begins.
-    """
-    walked = [False] * n
-    chains = []
-    for start in [*(v for v in range(len(at)) if is_corner[v]), *node[:n]]:
-        for first in at[start]:
-            if walked[first % n]:
-                continue
-            is_corner[start] = True
-            chain, e = [], first
-            while True:
-                walked[e % n] = True
-                chain.append(e)
-                v = node[_other(e, n)]
-                if is_corner[v]:
-                    break
-                e = next(other for other in at[v] if other != _other(e, n))
-            chains.append(chain)
-    return chains

@@ -12,6 +12,7 @@ A side that a repair or a neighbour has divided has corners where its partner is
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -23,23 +24,34 @@ from .from_segments import domain_of_segments
 from .frozen import domain_with_frozen
 from .given import given_of
 from .inputs import labelled
-from .periodic import Motion, PeriodicPair, pair_motion, periodic_pair, side_pieces, used_tolerance
+from .motion import Motion
+from .periodic import PeriodicPair, pair_motion, periodic_pair, used_tolerance
 
 
 def domain_with_pair(
     domain: DomainData, first: str, second: str, motion: Motion | None, tolerance: float | None
 ) -> DomainData:
     """The domain with two boundaries that correspond, each with the corners of the other."""
-    tolerance = used_tolerance(domain, tolerance)
-    motion = pair_motion(domain, first, second, motion)
+    tolerance = used_tolerance(domain.points, tolerance)
+    numbers = (domain.sides_named(first), domain.sides_named(second))
+    motion = pair_motion(domain.all_sides, numbers, (first, second), motion)
     domain = _divided(domain, *_missing(domain, first, second, motion, tolerance))
     domain = _divided(domain, *_missing(domain, second, first, motion.inverse(), tolerance))
-    return with_pair(domain, periodic_pair(domain, first, second, motion, tolerance))
+    return with_pair(domain, first, second, motion, tolerance)
 
 
-def with_pair(domain: D, pair: PeriodicPair) -> D:
-    """The same domain with one more pair of periodic boundaries."""
+def with_pair(domain: D, first: str, second: str, motion: Motion, tolerance: float) -> D:
+    """The same domain with one more pair of periodic boundaries, whose corners correspond."""
+    numbers = (domain.sides_named(first), domain.sides_named(second))
+    pair = periodic_pair(domain.all_sides, numbers, (first, second), motion, tolerance)
     return with_fields(domain, periodic=(*domain.periodic, pair))
+
+
+def with_pairs(domain: D, pairs: Iterable[PeriodicPair]) -> D:
+    """The same domain with the periodic boundaries of another, by name."""
+    for pair in pairs:
+        domain = with_pair(domain, pair.first, pair.second, pair.motion, pair.tolerance)
+    return domain
 
 
 def _missing(
@@ -50,10 +62,12 @@ def _missing(
     from scipy.spatial import KDTree
 
     nothing = np.empty((0, 2)), np.empty(0, np.int64)
-    theirs = side_pieces(domain, target)
+    if domain.curved.curves:
+        return nothing
+    theirs = domain.sides_named(target)
     theirs = theirs[~domain.segment_is_frozen[domain.piece_segments[theirs]]]
-    corners = np.unique(domain.pieces[side_pieces(domain, source)])
-    if domain.curved.curves or not len(theirs) or not len(corners):
+    corners = np.unique(domain.pieces[domain.sides_named(source)])
+    if not len(theirs) or not len(corners):
         return nothing
     images = motion(domain.points[corners])
     ends = domain.points[np.unique(domain.pieces[theirs])]
@@ -94,7 +108,4 @@ def _divided(domain: DomainData, places: Floats, segment: Int64s) -> DomainData:
     frozen = np.flatnonzero(np.append(domain.segment_is_frozen, domain.segment_is_frozen[owner]))
     out = domain_with_frozen(out, (), frozen) if len(frozen) else out
     out = with_fields(out, corners_found=domain.corners_found)
-    for pair in domain.periodic:
-        again = periodic_pair(out, pair.first, pair.second, pair.motion, pair.tolerance)
-        out = with_pair(out, again)
-    return out
+    return with_pairs(out, domain.periodic)

@@ -1,148 +1,262 @@
-"""The straight pieces of a domain and its runs of curves, alike: places along them.
+"""The sides of a domain: its lines from corner to corner, straight or curved, with a parameter.
 
-A place on a straight piece is a share of its length, from 0 to 1; on a run it is its parameter.
-Where two lines are periodic, each place on the one has an image on the other.
+::
+
+      A ------------ B ~~~~~~~~~~~ C          A straight side is a segment, or what is between two
+        side 0, u in   side 1: a path of      points on it; its parameter u is the share of its
+        [0, 1]         curves, u in [0, n]    length. A curved side is a path, see `paths`.
+
+Each side has a direction of its own, a straight one from its left end (the lower one, if it is
+upright): whatever is worked out along it is the same in all meshes, however the domain was given.
+Where two sides are periodic, each point of the one has an image on the other.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh.boundary.path_cuts import RunParts, turns_between
-from adaptmesh.types import Floats, Index, Ints
+from adaptmesh.curves import Curve
+from adaptmesh.types import Bools, Floats, Index, Ints
+from adaptmesh.value import Value
 
-from .data import DomainData
-from .paths import points_on
-from .periodic import Motion, frozen_pieces, images_on
+from .inputs import rows_of_each
+from .motion import Motion
+from .paths import Path, derivatives_on, points_on
+
+
+class SidePoints(NamedTuple):
+    """Points of sides, in order along each side, the sides in order.
+
+    Attributes
+    ----------
+    side : (k,) array of int
+    u : (k,) array
+        Parameters.
+    """
+
+    side: Index
+    u: Floats
+
+    @classmethod
+    def none(cls) -> SidePoints:
+        return cls(np.empty(0, np.intp), np.empty(0))
+
+    def where(self, chosen: Bools | Index) -> SidePoints:
+        """Some of the points (k,)."""
+        return SidePoints(self.side[chosen], self.u[chosen])
+
+    def joined(self, other: SidePoints) -> SidePoints:
+        """These points and others, each once."""
+        side, u = np.concatenate([self.side, other.side]), np.concatenate([self.u, other.u])
+        order = np.lexsort((u, side))
+        side, u = side[order], u[order]
+        is_new = np.ones(len(u), bool)
+        is_new[1:] = (np.diff(side) != 0) | (np.diff(u) != 0)
+        return SidePoints(side[is_new], u[is_new])
+
+    def counts(self, n_sides: int) -> NDArray[np.intp]:
+        """How many points each of n sides has."""
+        return np.bincount(self.side, minlength=n_sides)
+
+    def on(self, side: int) -> Floats:
+        """The parameters on one side."""
+        return self.u[slice(*np.searchsorted(self.side, [side, side + 1]))]
+
+    def rank_in(self, others: SidePoints, strictly: bool = False) -> Index:
+        """How many of others, in order, do not come after each point; or come before it."""
+        n = len(others.u)
+        side, u = np.concatenate([others.side, self.side]), np.concatenate([others.u, self.u])
+        is_other = np.arange(len(u)) < n
+        order = np.lexsort((is_other if strictly else ~is_other, u, side))
+        out = np.empty(len(u), np.intp)
+        out[order] = np.cumsum(is_other[order])
+        return out[n:]
+
+    def is_in(self, others: SidePoints) -> Bools:
+        """Which points are among others, in order."""
+        last = self.rank_in(others) - 1
+        out = last >= 0
+        last = last[out]
+        out[out] = (others.side[last] == self.side[out]) & (others.u[last] == self.u[out])
+        return out
+
+    def within(self, parts: SideParts) -> Index:
+        """The part that each point lies inside of, (k,), -1 for none."""
+        number = np.lexsort((parts.u[:, 0], parts.side))
+        parts = parts.where(number)
+        last = self.rank_in(SidePoints(parts.side, parts.u[:, 0]), strictly=True) - 1
+        out = np.full(len(last), -1)
+        some = np.flatnonzero(last >= 0)
+        part = last[some]
+        inside = (parts.side[part] == self.side[some]) & (self.u[some] < parts.u[part, 1])
+        out[some[inside]] = number[part[inside]]
+        return out
+
+
+class SideParts(NamedTuple):
+    """Parts of sides that do not overlap.
+
+    Attributes
+    ----------
+    side : (p,) array of int
+    u : (p, 2) array
+        The parameters of the ends of each.
+    """
+
+    side: Index
+    u: Floats
+
+    def where(self, chosen: Bools | Index) -> SideParts:
+        """Some of the parts."""
+        return SideParts(self.side[chosen], self.u[chosen])
 
 
 @dataclass(frozen=True)
-class Tie:
-    """The line that is the image of another, by which motion, and whether it runs backwards."""
+class Image:
+    """The side that is the image of another, by which motion, and whether it runs backwards."""
 
-    line: int
+    side: int
     motion: Motion
     is_reversed: bool
 
 
 @dataclass(frozen=True, eq=False)
-class Lines:
-    """What rows of edges lie along: first the straight pieces of a domain, then its runs.
+class Sides(Value):
+    """All sides of a domain: first the straight ones, then the curved ones.
 
     Attributes
     ----------
-    domain : Domain
     corners : (n, 2) array
         The points of the domain that are vertices of every mesh.
-    ends : (l, 2) array of int
-        The corners where each line begins and ends.
-    segments : (l,) array of int32
-        A segment of the domain that lies on each.
-    lengths : (l,) array
-        The place of the second end; that of the first is 0.
-    n_straight : int
-        So many are straight.
-    is_frozen : (l,) array of bool
+    ends : (s, 2) array of int
+        The corners where each side begins and ends.
+    paths : tuple of Path
+        The curved sides.
+    loose : (m, 2) array
+        Points beside the sides that say what is where: seeds of holes and of regions.
+    curves : tuple of Curve
+        Those that the domain was made of, if it was.
+    straight_curves : (s - p,) array of int32
+        The curve that each straight side is a part of; -1 for none.
+
+    The others are empty while a domain is made of curves:
+
+    inscribed : tuple of arrays
+        For each path parameters, with both ends, between which it turns by little.
+    segments : (s,) array of int32
+        A segment of the domain that lies on each side.
+    tags : (s,) array of int32
+        The number of the name of each.
+    is_frozen : (s,) array of bool
         Which are not to be cut.
-    ties : dict of int to Tie
-        For each line that is periodic with another one.
+    images : dict of int to Image
+        For each side that is periodic with another one.
     """
 
-    domain: DomainData
     corners: Floats
     ends: Index
-    segments: Ints
-    lengths: Floats
-    n_straight: int
-    is_frozen: NDArray[np.bool_]
-    ties: dict[int, Tie]
-
-    @classmethod
-    def of(cls, domain: DomainData) -> Lines:
-        """The lines of a domain."""
-        curved, n_runs = domain.curved, len(domain.curved.runs)
-        number = np.cumsum(curved.is_vertex) - 1
-        straight = np.flatnonzero(curved.segment_runs[domain.piece_segments] < 0)
-        run_ends = np.array([run.ends for run in curved.runs], np.intp).reshape(-1, 2)
-        on_run, first = np.unique(curved.segment_runs, return_index=True)
-        return cls(
-            domain,
-            domain.points[curved.is_vertex],
-            np.concatenate([number[domain.pieces[straight]], run_ends]),
-            np.concatenate([domain.piece_segments[straight], first[on_run >= 0]]).astype(np.int32),
-            np.concatenate([np.ones(len(straight)), [run.length for run in curved.runs]]),
-            len(straight),
-            np.concatenate([frozen_pieces(domain)[straight], np.zeros(n_runs, bool)]),
-            _ties(domain, straight),
-        )
+    paths: tuple[Path, ...]
+    loose: Floats
+    curves: tuple[Curve, ...]
+    straight_curves: Ints
+    inscribed: tuple[Floats, ...] = ()
+    segments: Ints = field(default_factory=lambda: np.empty(0, np.int32))
+    tags: Ints = field(default_factory=lambda: np.empty(0, np.int32))
+    is_frozen: Bools = field(default_factory=lambda: np.empty(0, bool))
+    images: dict[int, Image] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.ends)
 
-    def points(self, line: Index, place: Floats) -> Floats:
-        """Points (k, 2) at places (k,) on lines (k,)."""
-        out = np.empty((len(line), 2))
-        straight = line < self.n_straight
-        a, b = (self.corners[self.ends[line[straight], i]] for i in (0, 1))
-        out[straight] = a + place[straight, None] * (b - a)
-        run = line[~straight] - self.n_straight
-        out[~straight] = points_on(self.domain.curved.runs, run, place[~straight])
+    @property
+    def n_straight(self) -> int:
+        return len(self.ends) - len(self.paths)
+
+    @cached_property
+    def is_straight(self) -> Bools:
+        """Which sides are straight, (s,)."""
+        return np.arange(len(self)) < self.n_straight
+
+    @cached_property
+    def lengths(self) -> Floats:
+        """The parameter of the second end of each, (s,); that of the first is 0."""
+        return np.concatenate([np.ones(self.n_straight), [path.length for path in self.paths]])
+
+    def whole(self) -> SideParts:
+        """Each side as a part of itself."""
+        return SideParts(
+            np.arange(len(self)), np.stack([np.zeros(len(self)), self.lengths], axis=1)
+        )
+
+    def path(self, side: int) -> Path:
+        """A curved side."""
+        return self.paths[side - self.n_straight]
+
+    def point(self, side: Index, u: Floats) -> Floats:
+        """Points (k, 2) at the parameters u (k,) of sides (k,)."""
+        straight = self.is_straight[side]
+        a, b = (self.corners[self.ends[side, i]] for i in (0, 1))
+        out: Floats = np.where(u[:, None] == 1, b, a + u[:, None] * (b - a))
+        curved = ~straight
+        if curved.any():
+            out[curved] = points_on(self.paths, side[curved] - self.n_straight, u[curved])
         return out
 
-    def turns(self, line: Index, place: Floats) -> Floats:
-        """By what angle lines (k,) have turned from their beginnings to places (k,), in radians.
+    def derivative(self, side: Index, u: Floats) -> Floats:
+        """Derivatives (k, 2) by u at the parameters u (k,) of sides (k,)."""
+        a, b = (self.corners[self.ends[side, i]] for i in (0, 1))
+        out: Floats = b - a
+        curved = ~self.is_straight[side]
+        if curved.any():
+            out[curved] = derivatives_on(self.paths, side[curved] - self.n_straight, u[curved])
+        return out
 
-        From the chords of the domain, about: a chord has the direction of the curve at its middle.
+    def turn(self, side: Index, u: Floats) -> Floats:
+        """By what angle sides (k,) have turned from their beginnings to u (k,), in radians.
+
+        From the inscribed chords, about: a chord has the direction of the curve at its middle.
         """
-        out = np.zeros(len(line))
-        first, middle, turned = self._turning
-        for r in np.unique(line[line >= self.n_straight]) - self.n_straight:
-            mine, known = line == self.n_straight + r, slice(*first[[r, r + 1]])
-            out[mine] = np.interp(place[mine], middle[known], turned[known])
+        out = np.zeros(len(side))
+        for s, mine in rows_of_each(side).items():
+            if s >= self.n_straight:
+                middles, turned = self._turning[s - self.n_straight]
+                out[mine] = np.interp(u[mine], middles, turned)
         return out
 
     @cached_property
-    def _turning(self) -> tuple[Index, Floats, Floats]:
-        """Middles of chords of all runs and turns from the first, and where each run begins."""
-        part, u, vectors = RunParts.whole(self.domain).looks(self.domain)
-        turn = np.concatenate([[0.0], turns_between(part, vectors)])
-        first = np.searchsorted(part, np.arange(len(self.domain.curved.runs) + 1))
-        return first, u.mean(axis=1), np.cumsum(turn)
+    def _turning(self) -> list[tuple[Floats, Floats]]:
+        """Middles of the inscribed chords of each path, and the turns from the first of them."""
+        out = []
+        for path, u in zip(self.paths, self.inscribed, strict=True):
+            turns = turns_between(np.diff(path.point(u), axis=0))
+            out.append((0.5 * (u[1:] + u[:-1]), np.concatenate([[0.0], np.cumsum(turns)])))
+        return out
 
-    def images(self, line: int, places: Floats) -> Floats:
-        """The places on the other line of a tie of the images of places; ends go to ends."""
-        tie, length = self.ties[line], self.lengths[line]
-        if line < self.n_straight:
-            return 1 - places if tie.is_reversed else places
-        at = self.points(np.full(len(places), line), places)
-        out = images_on(self.domain.curved.runs[tie.line - self.n_straight], tie.motion(at))
-        far = self.lengths[tie.line]
-        begin, end = (far, 0.0) if tie.is_reversed else (0.0, far)
-        return np.where(places == 0, begin, np.where(places == length, end, out))
+    def image(self, side: int, u: Floats) -> Floats:
+        """The parameters of the images of points of a periodic side; ends go to ends."""
+        image, length = self.images[side], self.lengths[side]
+        if self.is_straight[side]:
+            return 1 - u if image.is_reversed else u
+        out = self.path(image.side).nearest(image.motion(self.path(side).point(u)))
+        far = self.lengths[image.side]
+        begin, end = (far, 0.0) if image.is_reversed else (0.0, far)
+        return np.where(u == 0, begin, np.where(u == length, end, out))
 
 
-def _ties(domain: DomainData, straight: Index) -> dict[int, Tie]:
-    """The ties of lines, from the pairs of pieces and runs of a domain."""
-    out: dict[int, Tie] = {}
-    number = np.full(len(domain.pieces), -1)
-    number[straight] = np.arange(len(straight))
-    runs = domain.curved.runs
+def turns_between(vectors: Floats) -> Floats:
+    """Angles between successive vectors (k, 2), (k - 1,)."""
+    before, after = vectors[:-1], vectors[1:]
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    return np.abs(np.arctan2(cross, (before * after).sum(axis=1)))
 
-    def tie(i: int, j: int, motion: Motion, is_reversed: bool) -> None:
-        out[i] = Tie(j, motion, is_reversed)
-        out[j] = Tie(i, motion.inverse(), is_reversed)
 
-    for pair in domain.periodic:
-        for p, q in pair.pieces.tolist():
-            start = pair.motion(domain.points[domain.pieces[p, :1]])
-            off = np.abs(domain.points[domain.pieces[q]] - start).max(axis=1)
-            tie(int(number[p]), int(number[q]), pair.motion, bool(off[1] < off[0]))
-        for r, s in pair.runs.tolist():
-            looks = runs[r].point(np.array([0.25, 0.5]) * runs[r].length)
-            near, far = images_on(runs[s], pair.motion(looks))
-            tie(len(straight) + r, len(straight) + s, pair.motion, bool(near > far))
-    return out
+def in_canonical_direction(points: Floats, pairs: Index) -> Index:
+    """Pairs of points (k, 2), the left one first, or the lower one of two above each other."""
+    p, q = points[pairs[:, 0]], points[pairs[:, 1]]
+    turned = (p[:, 0] > q[:, 0]) | ((p[:, 0] == q[:, 0]) & (p[:, 1] > q[:, 1]))
+    return np.where(turned[:, None], pairs[:, ::-1], pairs)

@@ -10,7 +10,7 @@ import numpy as np
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats
 
-from .paths import places_of
+from .joining import places_of
 
 
 def seeds_of(

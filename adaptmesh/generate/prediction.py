@@ -107,11 +107,11 @@ def _inscribed(domain: Domain, field: ControlSpace) -> _Polygon:
     curved = domain.curved
     border = domain.pieces[domain.piece_is_boundary]
     segment = domain.piece_segments[domain.piece_is_boundary]
-    on_run = curved.segment_runs[segment] >= 0
+    on_run = curved.segment_paths[segment] >= 0
     if not on_run.any():
         return _Polygon(domain.points, domain.triangles, border)
     segment = segment[on_run]
-    run, u = curved.segment_runs[segment], curved.segment_parameters[segment]
+    run, u = curved.segment_paths[segment], curved.segment_parameters[segment]
     turned = ~inside_is_left_of(domain, segment)[:, None]
     u = np.where(turned, u[:, ::-1], u)
     chord = np.where(turned, domain.segments[segment][:, ::-1], domain.segments[segment])
@@ -121,7 +121,7 @@ def _inscribed(domain: Domain, field: ControlSpace) -> _Polygon:
     while len(chord):
         middle = len(points) + np.arange(len(chord), dtype=np.int32)
         u_middle = u.mean(axis=1)
-        new = points_on(curved.runs, run, u_middle)
+        new = points_on(curved.paths, run, u_middle)
         points, tensors = np.concatenate([points, new]), np.concatenate([tensors, field(new)])
         halved = _is_coarse(points, tensors, chord, middle) & (len(points) < MOST_POINTS)
         edges.append(chord[~halved])

@@ -10,12 +10,11 @@ from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import ByLabel
 from adaptmesh.domain.named_sides import renamed_tags, tags_of_sides
 from adaptmesh.domain.naming import Chosen, Sides, split_names, straight_sides
-from adaptmesh.domain.side import Lines
 from adaptmesh.errors import DomainError
 from adaptmesh.topology import edge_keys, triangles_beside
 from adaptmesh.types import Ints
 
-from .boundary_polylines import find_chains
+from .boundary_polylines import find_polylines
 from .data import M, MeshData
 from .to_domain import with_interfaces
 
@@ -57,33 +56,32 @@ def _as_its_domain(mesh: M, names: ByLabel[Chosen]) -> M:
             "mesh.domain.with_names, and mesh it"
         )
     named = domain.with_names(names)
-    lines = Lines.of(domain)
-    chains = find_chains(mesh, lines)
-    if chains is None:
+    polylines = find_polylines(mesh, domain)
+    if polylines is None:
         raise DomainError(
             "the constrained edges of the mesh are not along the lines of its domain: leave the "
             "domain out, dataclasses.replace(mesh, domain=None)"
         )
-    tag_of = _tags_of_lines(domain, named, lines)
+    tag_of = _tags_of_sides(domain, named)
     n = len(mesh.points)
-    keys = edge_keys(chains.edges, n)
+    keys = edge_keys(polylines.edges, n)
     order = np.argsort(keys)
     asked = edge_keys(mesh.edges, n)
     found = order[np.searchsorted(keys, asked, sorter=order)]
-    tags = tag_of[chains.edge_lines[found]]
+    tags = tag_of[polylines.edge_sides[found]]
     return replace(mesh, edge_tags=tags, names=named.names, domain=named)
 
 
-def _tags_of_lines(domain: Domain, named: Domain, lines: Lines) -> Ints:
-    """The new tag of each line; a run of several curves has to have one."""
+def _tags_of_sides(domain: Domain, named: Domain) -> Ints:
+    """The new tag of each side; a path of several curves has to have one."""
     if not domain.curved.curves:
-        return named.segment_tags[lines.segments]
+        return named.all_sides.tags
     of_curve = tags_of_sides(named)
-    out = of_curve[domain.curved.segment_curves[lines.segments]]
-    for run in domain.curved.runs:
-        found = np.unique(of_curve[list(run.curves)])
+    out = of_curve[domain.curved.segment_curves[domain.all_sides.segments]]
+    for path in domain.curved.paths:
+        found = np.unique(of_curve[list(path.curves)])
         if len(found) > 1:
-            a, b = run.curves[0], run.curves[-1]
+            a, b = path.curves[0], path.curves[-1]
             raise DomainError(
                 f"curves {a} to {b} are one smooth line of the mesh, which has no vertex where the "
                 "name changes: give names to the domain, and mesh it"

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from adaptmesh.domain.periodic import Motion, PeriodicSides
+from adaptmesh.domain.motion import Motion
+from adaptmesh.domain.periodic import PeriodicSides
 from adaptmesh.errors import FormatError
 
 from .data import MeshData

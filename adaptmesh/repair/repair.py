@@ -116,7 +116,7 @@ def _repaired(dirty: Any, tolerance: float | None, holes: Holes) -> tuple[Domain
         dirty, holes = replace(dirty, holes=holes), None
     refuse_holes(holes, "a mesh, a domain, polygons or points in holes")
     if isinstance(dirty, Domain):
-        if dirty.curved.runs:
+        if dirty.curved.paths:
             return dirty, Repairs((), used_tolerance(dirty.points, tolerance))
         dirty = Outline.of_domain(dirty)
     if isinstance(dirty, Outline):

@@ -114,8 +114,8 @@ def simplify(
 
 
 def _refuse_curves(domain: Domain) -> None:
-    if domain.curved.runs:
-        curved = int(np.flatnonzero(domain.curved.segment_runs >= 0)[0])
+    if domain.curved.paths:
+        curved = int(np.flatnonzero(domain.curved.segment_paths >= 0)[0])
         raise DomainError(
             f"the domain has curves, one of them through "
             f"{at(*domain.points[domain.segments[curved, 0]])}, and simplify is for straight "

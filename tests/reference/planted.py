@@ -865,7 +865,7 @@ def _seeds(domain):
 
 
 def _other_domain(mesh, **changes):
-    if mesh.domain.curved.runs:
+    if mesh.domain.curved.paths:
         return None
     outline = am.Domain(
         **{
@@ -908,7 +908,7 @@ def domain_with_a_point_more(mesh):
 
 @fault
 def domain_with_a_line_more(mesh):
-    if mesh.domain.curved.runs:
+    if mesh.domain.curved.paths:
         return None
     free = set(inner_vertices(mesh).tolist()) - set(corners(mesh))
     ends = next(e for e in sides(mesh) if set(e) <= free)

@@ -20,7 +20,7 @@ from .domain_subject import DomainSubject
 from .subject import Finding, finding
 
 
-class Sides(NamedTuple):
+class BesideEdges(NamedTuple):
     """The edges of rows from both sides, one after the other.
 
     Attributes
@@ -38,32 +38,33 @@ class Sides(NamedTuple):
     expected: Int64s
 
 
-def sides_of_rows(s: DomainSubject) -> Sides:
+def beside_edges(s: DomainSubject) -> BesideEdges:
     """What lies beside the edges of rows."""
-    rows = [(line, row) for line, row in enumerate(s.rows) if row is not None]
+    rows = [(k, p) for k, p in enumerate(s.polylines.of_side) if p]
     none = np.empty(0, np.int64)
-    edge = np.concatenate([none, *(row.edges for _, row in rows)])
-    tails = np.concatenate([none, *(row.vertices[:-1] for _, row in rows)])
-    heads = np.concatenate([none, *(row.vertices[1:] for _, row in rows)])
-    line = np.repeat([k for k, _ in rows], [len(row.edges) for _, row in rows]).astype(np.int64)
+    edge = np.concatenate([none, *(p.edges for _, p in rows)])
+    tails = np.concatenate([none, *(p.vertices[:-1] for _, p in rows)])
+    heads = np.concatenate([none, *(p.vertices[1:] for _, p in rows)])
+    side = np.repeat([k for k, _ in rows], [len(p.edges) for _, p in rows]).astype(np.int64)
     pairs = np.stack([tails, heads], axis=1).astype(np.int32)
     beside = triangles_beside(s.mesh.triangles, pairs, len(s.mesh.points))
-    expected = regions_beside_lines(s)[line]
-    return Sides(np.tile(edge, 2), np.concatenate(beside), expected.T.ravel())
+    expected = regions_beside_sides(s)[side]
+    return BesideEdges(np.tile(edge, 2), np.concatenate(beside), expected.T.ravel())
 
 
-def regions_beside_lines(s: DomainSubject) -> Int64s:
-    """The regions on the left and the right of each line in the domain, (l, 2)."""
-    domain, lines = s.domain, s.lines
-    straight = domain.curved.segment_runs[domain.piece_segments] < 0
-    chords = domain.segments[lines.segments[lines.n_straight :]]
-    ends = np.concatenate([domain.pieces[straight], chords])
+def regions_beside_sides(s: DomainSubject) -> Int64s:
+    """The regions on the left and the right of each side in the domain, (s, 2)."""
+    domain, sides = s.domain, s.domain_sides
+    vertices = np.flatnonzero(domain.curved.is_vertex)
+    straight = vertices[sides.ends[: sides.n_straight]]
+    chords = domain.segments[sides.segments[sides.n_straight :]]
+    ends = np.concatenate([straight, chords])
     return regions_beside(domain.triangles, domain.triangle_regions, ends, len(domain.points))
 
 
 def fills_domain(s: DomainSubject) -> Finding:
     """Along the boundary there are triangles on the inner side only; along inner lines on both."""
-    sides = sides_of_rows(s)
+    sides = beside_edges(s)
     outside = sides.expected == OUTSIDE
     bad = np.flatnonzero(outside == (sides.triangle >= 0))
 
@@ -79,7 +80,7 @@ def fills_domain(s: DomainSubject) -> Finding:
 
 def regions_of_domain(s: DomainSubject) -> Finding:
     """Every triangle has the number of the region of the domain that it lies in."""
-    sides = sides_of_rows(s)
+    sides = beside_edges(s)
     known = (sides.expected != OUTSIDE) & (sides.triangle >= 0)
     part = parts_between(s.mesh.triangles, s.mesh.edges, len(s.mesh.points))
     expected = np.full(part.max() + 1, OUTSIDE, np.int64)

@@ -282,7 +282,7 @@ def validate(mesh: MeshData, *, tolerance: float | None = None) -> Validity:
 
 def _lines_of(domain: Domain) -> Table[DomainSubject]:
     """The checks that a domain needs: those of curves only if it has some, and so on."""
-    has_curves = bool(domain.curved.runs)
+    has_curves = bool(domain.curved.paths)
     needed = {
         "curves present": has_curves,
         "vertices on curves": has_curves,

@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 import adaptmesh as am
 from adaptmesh.adapt.sub_polylines import unit_parts
-from adaptmesh.domain.side import Lines
-from adaptmesh.mesh.boundary_polylines import find_chains
+from adaptmesh.mesh.boundary_polylines import find_polylines
 
 
 def box():
@@ -271,11 +270,11 @@ def test_meshes_that_are_not_of_their_domain_are_made_anew():
     leaky = am.Mesh(
         mesh.points, mesh.triangles, np.arange(len(mesh.triangles)) % 2, mesh.edges, domain=box()
     )
-    assert find_chains(leaky, Lines.of(box())) is None
+    assert find_polylines(leaky, box()) is None
     other = am.Domain.rectangle(0, 0, 2, 1)
-    assert find_chains(am.Mesh(mesh.points, mesh.triangles, domain=other), Lines.of(other)) is None
+    assert find_polylines(am.Mesh(mesh.points, mesh.triangles, domain=other), other) is None
     short = am.Mesh(mesh.points, mesh.triangles, mesh.regions, mesh.edges[1:], domain=box())
-    assert find_chains(short, Lines.of(box())) is None
+    assert find_polylines(short, box()) is None
     edited = am.adapt(short, 0.2, keep=True)
     assert am.validate(edited)
 

@@ -37,7 +37,7 @@ def test_smooth_joints_are_no_vertices_and_corners_are():
     ]
     domain = Domain.from_curves(stadium)
     assert len(vertices(domain)) == 1  # a closed line begins somewhere
-    assert [len(run.parts) for run in domain.curved.runs] == [4]
+    assert [len(run.parts) for run in domain.curved.paths] == [4]
     assert len(vertices(Domain.from_curves(stadium, names={"bottom": [0]}))) == 2
     assert len(vertices(Domain.from_curves([*stadium, Line((2, 0), (1, 1))]))) == 2
     assert domain.area == pytest.approx(4 + np.pi, rel=1e-14)
@@ -61,7 +61,7 @@ def test_curves_may_come_in_any_order_and_direction():
     shuffled = [quarter[2].reversed(), quarter[0], quarter[3], quarter[1].reversed()]
     domain = Domain.from_curves(shuffled)
     assert domain.area == pytest.approx(np.pi, rel=1e-14)
-    assert [len(run.parts) for run in domain.curved.runs] == [4]
+    assert [len(run.parts) for run in domain.curved.paths] == [4]
 
 
 def test_ends_join_within_the_tolerance_only():

@@ -101,7 +101,7 @@ def test_what_does_not_correspond_is_named():
     bent = am.Domain.polygon(
         [(0, 0), (1, 0), (1.1, 0.5), (1, 1), (0, 1)], names={"left": [4], "right": [1, 2]}
     )
-    with pytest.raises(DomainError, match=r"from \(0, 1\) to \(0, 0\) on 'left' would be"):
+    with pytest.raises(DomainError, match=r"from \(0, 0\) to \(0, 1\) on 'left' would be"):
         bent.with_periodic("left", "right", translation=(1, 0))
     with pytest.raises(DomainError, match="no segment is named 'wall'"):
         bent_with_empty_name().with_periodic("wall", "right")
@@ -145,7 +145,7 @@ def test_the_motion_found_does_not_depend_on_points_between():
     ring = [(0, 0), (1, 0), (1, 0.5), (1, 1), (0, 1), (0, 0.25)]
     domain = am.Domain.polygon(ring, names={"left": [4, 5], "right": [1, 2]})
     pair = domain.with_periodic("left", "right").periodic[0]
-    assert pair.motion.shift.tolist() == [1, 0] and len(pair.pieces) == 3
+    assert pair.motion.shift.tolist() == [1, 0] and len(pair.sides) == 3
 
 
 def test_a_pair_survives_a_file_though_corners_are_dropped_there(tmp_path):

@@ -207,7 +207,7 @@ def test_straight_sides_between_arcs_stay_straight(transform: Transform):
     fine = am.generate(am.Domain.from_curves(curves), 0.05 * transform.scale)
     for points in (fine.points, significant(12)(fine.points)):
         domain = bare(fine, points).to_domain(corner_angle=40)
-        straight = domain.points[domain.segments[domain.curved.segment_runs < 0]]
+        straight = domain.points[domain.segments[domain.curved.segment_paths < 0]]
         assert len(straight) == 2
         lengths = np.hypot(*np.diff(straight, axis=1)[:, 0].T)
         np.testing.assert_allclose(lengths, 2 * transform.scale, rtol=0.05)  # but an edge

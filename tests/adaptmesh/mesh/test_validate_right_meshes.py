@@ -34,7 +34,7 @@ def test_right_meshes_are_valid_and_the_exact_oracle_agrees():
         seen += 1
         if len(mesh.triangles) <= LARGEST_EXACT:
             assert faults_of_mesh(mesh) == [], what
-            if not mesh.domain.curved.runs:
+            if not mesh.domain.curved.paths:
                 assert faults_against_domain(mesh, mesh.domain) == [], what
     assert seen >= 0.9 * COUNT
 
