@@ -142,7 +142,7 @@ def test_images_are_where_the_motion_carries_points(transform):
 
 def test_arcs_are_images_of_arcs():
     """Curves in opposite directions: parameters grow the other way."""
-    lower, upper = Arc((0, 0), 1, 180, 360), Arc((0, 3), 1, 0, -180)
+    lower, upper = Arc((0, 0), 1, np.pi, 2 * np.pi), Arc((0, 3), 1, 0, -np.pi)
     domain = am.Domain.from_curves(
         [lower, Line((1, 0), (1, 3)), upper, Line((-1, 3), (-1, 0))],
         names={"low": [0], "high": [2]},
