@@ -1,9 +1,10 @@
-"""Names and the numbers behind them, between libraries that have sets and a mesh that has tags."""
+"""Names and fields between a mesh and other libraries: sets and tags, values by their number."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,8 @@ from adaptmesh.mesh.incoming import Content, mesh_of
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.to_domain import with_interfaces
 from adaptmesh.types import Ints
+
+Fields = dict[str, NDArray[Any]]
 
 
 def incoming(content: Content, origin: str) -> Mesh:
@@ -70,3 +73,22 @@ def tags_of_sets(
             )
         tags[items] = tag
     return tags, {name: tag for tag, name in enumerate(wanted, start=1)}
+
+
+def split_fields(mesh: Mesh, fields: Mapping[str, ArrayLike]) -> tuple[Fields, Fields]:
+    """The fields at the points, and those of the triangles."""
+    n, m = len(mesh.points), len(mesh.triangles)
+    at_points: Fields = {}
+    of_triangles: Fields = {}
+    for name, given in fields.items():
+        values = np.asarray(given)
+        if values.ndim and len(values) == n:
+            at_points[name] = values
+        elif values.ndim and len(values) == m:
+            of_triangles[name] = values
+        else:
+            raise ValueError(
+                f"the field {name!r} has shape {values.shape}: {n} values at the points are "
+                f"wanted, or {m} of the triangles"
+            )
+    return at_points, of_triangles

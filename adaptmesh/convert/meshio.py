@@ -13,8 +13,7 @@ from adaptmesh.files.located import located
 from adaptmesh.mesh.incoming import Content, refuse_cells
 from adaptmesh.mesh.mesh import Mesh
 
-from .fields import split_fields
-from .labels import incoming, tags_of_sets
+from .labels import incoming, split_fields, tags_of_sets
 
 if TYPE_CHECKING:
     import meshio

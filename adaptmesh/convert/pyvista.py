@@ -12,8 +12,7 @@ from adaptmesh.mesh.incoming import Content, refuse_cells
 from adaptmesh.mesh.mesh import Mesh
 from metrics import qualities
 
-from .fields import split_fields
-from .labels import incoming
+from .labels import incoming, split_fields
 
 if TYPE_CHECKING:
     import pyvista as pv

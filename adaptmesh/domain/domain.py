@@ -29,6 +29,7 @@ from .motion import Motion
 from .names import domain_with_names
 from .naming import Chosen
 from .periodic_corners import domain_with_pair
+from .points import CurvePoints
 
 
 class Domain(DomainData):
@@ -103,6 +104,21 @@ class Domain(DomainData):
     ) -> None:
         given = Given(points, segments, holes, regions, names, tags, region_tags)
         vars(self).update(contents(domain_of_segments(given)))
+
+    @property
+    def points(self) -> Floats:
+        """Its points, (n, 2).
+
+        Pairs of points of a domain with curves, ``points[segments]``, are chords; all the same
+        `metrics.Geometry`, and all else that takes a geometry, measures from the curves. This holds
+        for pairs and rows of them, not for what is computed of them; nor for the edges of a mesh,
+        ``mesh.points[mesh.edges]``.
+        """
+        return self._curve_points if self.curved.curves else vars(self)["points"]
+
+    @cached_property
+    def _curve_points(self) -> CurvePoints:
+        return CurvePoints.of(self, vars(self)["points"])
 
     @classmethod
     def of_data(cls, data: DomainData) -> Domain:
@@ -213,8 +229,8 @@ class Domain(DomainData):
         -----
         `points`, `segments` and `triangles` of the domain are a polygon inscribed in the curves;
         `curved` tells which of its points are on which curve. `area` is that between the true
-        curves. Distances to ``points[segments]`` are those to the polygon, which may be off the
-        curves by far more than a first height or a small size: give `sides` to what measures them.
+        curves. So are distances from ``points[segments]`` and from `sides`, for what measures them
+        in `metrics`; those from other arrays of points are distances from the polygon.
 
         Examples
         --------

@@ -9,7 +9,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from adaptmesh.text.rich import html, plain
+from adaptmesh.text import html, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import metrics
-from adaptmesh.text.places import place_text
+from adaptmesh.text import place_text
 from adaptmesh.types import Floats
 from metrics import ControlSpace
 from metrics.measure.exact import edge_lengths

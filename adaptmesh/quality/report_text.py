@@ -10,8 +10,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from adaptmesh.text.places import place_text
-from adaptmesh.text.rich import html, plain
+from adaptmesh.text import html, place_text, plain
 
 from .figures import Figures, Point
 from .reasons import Cause, Reason

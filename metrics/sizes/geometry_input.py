@@ -46,6 +46,9 @@ def parts_of(geometry: Any) -> Iterator[Part | Pieces]:
     elif hasattr(geometry, "points") and hasattr(geometry, "segments"):
         points = as_points(geometry.points)
         yield Pieces(points[as_indices(geometry.segments, 2, len(points), "segment")])
+    elif isinstance(geometry, (list, tuple)) and any(hasattr(g, "cubic_pieces") for g in geometry):
+        for item in geometry:  # not one array of all: items know more than their coordinates
+            yield from parts_of(item)
     else:
         yield from _of_arrays(geometry)
 

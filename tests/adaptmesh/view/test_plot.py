@@ -351,7 +351,7 @@ def test_path_refused(tmp_path):
 
 def test_nothing_heavy_is_loaded_with_the_package():
     script = (
-        "import adaptmesh.plot, adaptmesh.report, adaptmesh.validate, adaptmesh.convert, sys;"
+        "import adaptmesh.view.picture, adaptmesh.quality.report, adaptmesh.convert, sys;"
         "print([m for m in ('pyvista', 'vtkmodules', 'matplotlib', 'shapely') if m in sys.modules])"
     )
     done = subprocess.run(
