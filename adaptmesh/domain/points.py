@@ -124,7 +124,7 @@ def _is_everything(index: Any) -> bool:
 def _pieces_of(domain: DomainData, pairs: Int64s, places: Floats) -> CubicPieces:
     """The curves between pairs of points (k, 2), and straight lines where there are none."""
     segment, is_reversed = _segments_between(domain, pairs)
-    on_curve = (segment >= 0) & (domain.curved.segment_runs[segment] >= 0)
+    on_curve = (segment >= 0) & (domain.curved.segment_paths[segment] >= 0)
     chosen = np.zeros(len(domain.segments), bool)
     chosen[segment[on_curve]] = True
     turned = np.zeros(len(domain.segments), bool)
