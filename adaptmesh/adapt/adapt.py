@@ -10,7 +10,7 @@ import metrics
 from adaptmesh.boundary.vertex_limit import Progress, VertexLimit
 from adaptmesh.domain.domain import Domain
 from adaptmesh.generate.generate import MAX_VERTICES, generate, graded_within_budget
-from adaptmesh.generate.prediction import predicted
+from adaptmesh.generate.prediction import predict_with_samples
 from adaptmesh.mesh.boundary_polylines import vertices_at
 from adaptmesh.mesh.checks import check_is_mesh
 from adaptmesh.mesh.cleaned import with_edges_once
@@ -109,7 +109,7 @@ def adapt(
 def _edited(
     mesh: Mesh, domain: Domain, field: ControlSpace, max_vertices: int, progress: Progress | None
 ) -> Edited | None:
-    prediction = predicted(domain, field)
+    prediction = predict_with_samples(domain, field)
     limit = VertexLimit(max_vertices, prediction.count)
     limit.check_prediction()
     return edited(mesh, domain, field, prediction, limit, progress or (lambda stage, f: None))

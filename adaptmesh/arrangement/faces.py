@@ -1,9 +1,9 @@
-"""The faces that noded segments divide the plane into, found exactly.
+"""The faces between noded segments, found by an exact triangulation.
 
-+-------------+   The segments are put in a frame and triangulated by the core, which proves that
-|   +---+     |   they meet only at their ends: anything else is a fault. Triangles connected over
-| 0 | 1 |--   |   edges that are no segment are one face; face 0 is the outside. A segment with
-|   +---+     |   the same face on both sides bounds nothing.
++-------------+   The segments are triangulated within a frame by the core, which proves that they
+|   +---+     |   meet only at their ends and reports anything else as a fault. Triangles that
+| 0 | 1 |--   |   share an edge that is not a segment belong to one face; face 0 is the outside.
+|   +---+     |   A segment with the same face on both sides bounds nothing.
 +-------------+
 """
 
@@ -21,7 +21,7 @@ from adaptmesh.geometry.containing import containing_triangles
 from adaptmesh.topology import components, edge_keys, half_edges
 from adaptmesh.types import Floats, Int64s
 
-from .record import at
+from .record import point_text
 
 
 @dataclass(frozen=True)
@@ -31,12 +31,12 @@ class Faces:
     Attributes
     ----------
     points : (n, 2) array
-        Those of the edges, then the four of the frame.
+        The points of the edges, then the four of the frame.
     triangles : (m, 3) array
     face : (m,) array
-        Of each triangle.
+        The face of each triangle.
     left, right : (e,) array
-        The face beside each edge, seen from its first point to its second.
+        The faces on the left and right of each edge, directed from its first point to its second.
     """
 
     points: Floats
@@ -52,21 +52,21 @@ class Faces:
 
     @cached_property
     def areas(self) -> Floats:
-        """Area of each face; that of the outside reaches to the frame."""
+        """Area of each face; the outside is counted up to the frame."""
         return np.bincount(self.face, self._doubled_areas) / 2
 
     @cached_property
-    def places(self) -> Floats:
-        """A point in each face, (f, 2): the centre of the triangle with the greatest height."""
+    def inner_points(self) -> Floats:
+        """A point in each face, (f, 2): the centroid of its triangle of largest minimal height."""
         p = self.points[self.triangles]
         longest = np.square(p - np.roll(p, 1, axis=1)).sum(axis=2).max(axis=1)
         order = np.lexsort((self._doubled_areas / np.sqrt(longest), self.face))
         last = np.append(self.face[order][1:] != self.face[order][:-1], True)
         return p[order[last]].mean(axis=1)
 
-    def at(self, places: Floats) -> Int64s:
-        """The face that each place (k, 2) is in; on an edge one beside it, elsewhere 0."""
-        found = containing_triangles(self.points, self.triangles, places)
+    def locate(self, points: Floats) -> Int64s:
+        """Return the face of each point (k, 2): a face beside it on an edge, 0 out of the frame."""
+        found = containing_triangles(self.points, self.triangles, points)
         return np.append(self.face, 0)[found]
 
     @cached_property
@@ -75,20 +75,20 @@ class Faces:
         u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
         return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
 
-    def united(self, edges: NDArray[np.bool_]) -> Int64s:
-        """For each face the number of the one it becomes when edges are taken away."""
+    def merge_across(self, edges: NDArray[np.bool_]) -> Int64s:
+        """Number the faces that are left without some edges; return the number of each old face."""
         return components(self.count, np.stack([self.left[edges], self.right[edges]], axis=1))
 
 
 def find_faces(points: Floats, edges: Int64s) -> Faces:
-    """Triangulate edges in a frame, and number the faces.
+    """Triangulate edges within a frame and number the faces.
 
     Parameters
     ----------
     points : (n, 2) array
-        All used by edges, none twice.
+        Distinct points, each an end of an edge.
     edges : (e, 2) array
-        None twice, in either direction.
+        Distinct edges, in either direction.
 
     Raises
     ------
@@ -108,14 +108,14 @@ def find_faces(points: Floats, edges: Int64s) -> Faces:
     except Fault as fault:
         kind, _, _, x, y = fault.args
         raise DomainError(
-            f"{kind.replace('_', ' ')} are left at {at(x, y)} after the repair: features there are "
-            "as small as the rounding of coordinates; choose a larger tolerance"
+            f"{kind.replace('_', ' ')} remain at {point_text(x, y)} after the repair: features "
+            "there are as small as the rounding of coordinates; choose a larger tolerance"
         ) from fault
     if len(pieces) != len(segments):
         lost = segments[~np.isin(edge_keys(segments, n + 4), edge_keys(pieces, n + 4))][0, 0]
         raise DomainError(
-            f"a segment from {at(*framed[lost])} passes through other points after the repair: "
-            "choose another tolerance"
+            f"a segment from {point_text(*framed[lost])} passes through other points after the "
+            "repair: choose another tolerance"
         )
     corners = triangles.astype(np.int64)
     face, left, right = _faces_between(corners, segments.astype(np.int64), n)
@@ -125,27 +125,27 @@ def find_faces(points: Floats, edges: Int64s) -> Faces:
 def _faces_between(
     triangles: Int64s, segments: Int64s, corner: int
 ) -> tuple[Int64s, Int64s, Int64s]:
-    """The face of each triangle, and those on the left and right of each segment.
+    """Return the face of each triangle, and the faces on the left and right of each segment.
 
-    The face of the frame's first corner is number 0; beyond the frame there is -1.
+    The face at the frame's first corner is 0; outside the frame it is -1.
     """
     n = int(segments.max()) + 1
     halves, owner = half_edges(triangles)
     keys = edge_keys(halves, n)
     order = np.argsort(keys, kind="stable")
     keys, owner, upward = keys[order], owner[order], (halves[:, 0] < halves[:, 1])[order]
-    wanted = edge_keys(segments, n)
+    segment_keys = edge_keys(segments, n)
 
     twin = np.flatnonzero(keys[1:] == keys[:-1])
-    at_segment = np.searchsorted(np.sort(wanted), keys[twin])
-    locked = np.append(np.sort(wanted), -1)[at_segment] == keys[twin]
+    at_segment = np.searchsorted(np.sort(segment_keys), keys[twin])
+    locked = np.append(np.sort(segment_keys), -1)[at_segment] == keys[twin]
     free = twin[~locked]
     face = components(len(triangles), np.stack([owner[free], owner[free + 1]], axis=1))
     outside = face[np.flatnonzero((triangles == corner).any(axis=1))[0]]
     face = np.where(face == outside, 0, np.where(face < outside, face + 1, face))
 
-    first = np.searchsorted(keys, wanted)
-    last = np.searchsorted(keys, wanted, side="right") - 1
+    first = np.searchsorted(keys, segment_keys)
+    last = np.searchsorted(keys, segment_keys, side="right") - 1
     faces = np.append(face[owner], -1)
     # The triangle with the half edge from the lower to the higher point is on the left of it.
     low_left = np.where(upward[first], first, np.where(upward[last], last, len(owner)))

@@ -1,4 +1,4 @@
-"""What was repaired: each thing done, where, and how far it moved."""
+"""Records of repairs: what was done, where, and how far points moved."""
 
 from __future__ import annotations
 
@@ -10,28 +10,27 @@ from typing import overload
 
 from adaptmesh.value import Value
 
-SHOWN = 5
-"""So many repairs of a kind are printed; `Repairs` holds all of them."""
-
+MAX_PRINTED = 5
+"""Number of repairs of each kind in a printed report; `Repairs` holds all of them."""
 
 NOWHERE = (math.nan, math.nan)
-"""The place of a repair of what has no points."""
+"""The place of a repair of something without points."""
 
 
 @dataclass(frozen=True, eq=False)
 class Repair(Value):
-    """One thing done to an outline.
+    """One repair of an outline.
 
     Attributes
     ----------
     kind : str
         What was wrong, in a word or two: ``"crossing"``, ``"nearly the same point"``, ...
     place : (float, float)
-        Where; NaN for what has no points.
+        Coordinates; NaN for something without points.
     what : str
-        What was wrong there and what was done, with the items and the size of the change.
+        What was wrong and what was done, with the items and the size of the change.
     displacement : float
-        How far a point was moved for it, or a segment was bent; 0 if nothing moved.
+        How far a point was moved or a segment was bent; 0 if nothing moved.
     """
 
     kind: str
@@ -45,23 +44,23 @@ class Repair(Value):
 
     @property
     def where(self) -> str:
-        """The place in words; empty if it has none."""
-        return "" if math.isnan(self.place[0]) else f"at {at(*self.place)}"
+        """The place as text; empty if there is none."""
+        return "" if math.isnan(self.place[0]) else f"at {point_text(*self.place)}"
 
 
 @dataclass(frozen=True, eq=False)
 class Repairs(Value, Sequence[Repair]):
-    """All that was done to an outline; printed as a report, and false if nothing was done.
+    """The repairs of an outline: printed as a report, false if there are none.
 
     Attributes
     ----------
     records : tuple of Repair
-        Each thing done, in the order of the work.
+        The repairs in the order in which they were made.
     tolerance : float
-        What was nearer than this was made one.
+        Points closer than this were merged.
     displacement : float
-        The farthest that any point of the clean outline lies from the segment that it was on in
-        the given one. Steps can add up, so that it may exceed the tolerance.
+        The largest distance of a point of the clean outline from the given segment that it
+        belongs to. Several steps can add up to more than the tolerance.
     """
 
     records: tuple[Repair, ...]
@@ -70,7 +69,7 @@ class Repairs(Value, Sequence[Repair]):
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many repairs of each kind there are."""
+        """The number of repairs of each kind."""
         return dict(Counter(record.kind for record in self.records))
 
     def __len__(self) -> int:
@@ -93,7 +92,7 @@ class Repairs(Value, Sequence[Repair]):
         n = len(self)
         return (
             f"{n} repair{'s' if n > 1 else ''} (tolerance {self.tolerance:.3g}, "
-            f"nothing moved farther than {self.displacement:.3g})"
+            f"largest displacement {self.displacement:.3g})"
         )
 
     def __str__(self) -> str:
@@ -105,13 +104,13 @@ class Repairs(Value, Sequence[Repair]):
             these = [record for record in self.records if record.kind == kind]
             lines += [
                 f"    {record.where}: {record.what}" if record.where else f"    {record.what}"
-                for record in these[:SHOWN]
+                for record in these[:MAX_PRINTED]
             ]
-            if count > SHOWN:
-                lines.append(f"    ... and {count - SHOWN} more")
+            if count > MAX_PRINTED:
+                lines.append(f"    ... and {count - MAX_PRINTED} more")
         return "\n".join(lines)
 
 
-def at(x: float, y: float) -> str:
-    """A place as messages give it."""
+def point_text(x: float, y: float) -> str:
+    """Format a point for a message."""
     return f"({x:.10g}, {y:.10g})"

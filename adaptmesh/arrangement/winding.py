@@ -1,8 +1,8 @@
-"""How often each ring goes around each face.
+"""Winding numbers of rings around faces.
 
 +-----------+          Crossing an edge of a ring from its right to its left raises the
 |  1  +-----+----+     winding number by one. From the outside, where all are zero, a walk
-|     |  2  | 1  |     over the faces gives those of every face.
+|     |  2  | 1  |     over the faces gives the numbers of every face.
 +-----+-----+    |
       +----------+
 """
@@ -22,21 +22,21 @@ Passes = tuple[Int64s, Int64s, Int64s]
 
 
 def winding_changes(faces: Faces, passes: Passes) -> Iterator[tuple[int, dict[int, int]]]:
-    """Visit all faces but the outside, each with the change of winding numbers since the last one.
+    """Visit all faces but the outside, with the changes of winding numbers since the last face.
 
-    Together the changes are no more than twice the passes, however deep rings are nested.
+    There are at most twice as many changes as passes, however deep rings are nested.
 
     Parameters
     ----------
     faces : Faces
     passes : (edge, ring, net) arrays
-        As `net_passes` returns them.
+        As returned by `sum_passes`.
 
     Yields
     ------
     face : int
     changes : dict of int to int
-        By ring. Before the first face all winding numbers are zero.
+        The change for each ring. Before the first face all winding numbers are zero.
     """
     edge, ring, net = passes
     order, before, through = walk(faces)
@@ -52,7 +52,7 @@ def winding_changes(faces: Faces, passes: Passes) -> Iterator[tuple[int, dict[in
     changes: dict[int, int] = defaultdict(int)
     todo = [(face, 1) for face in next_to[0]]
     while todo:
-        face, way = todo.pop()  # into the face, or back out of it
+        face, way = todo.pop()  # way: 1 into the face, -1 back out of it
         k = step_to[face]
         for i in range(start[k], stop[k]):
             changes[rings[i]] += way * into_left[k] * nets[i]
@@ -63,8 +63,8 @@ def winding_changes(faces: Faces, passes: Passes) -> Iterator[tuple[int, dict[in
             todo += [(beyond, 1) for beyond in next_to[face]]
 
 
-def net_passes(edge: Int64s, sign: Int64s, ring: Int64s) -> Passes:
-    """Edges, rings along them, and how often more along than against; sorted by edge."""
+def sum_passes(edge: Int64s, sign: Int64s, ring: Int64s) -> Passes:
+    """Return edges, rings along them, and the passes along less those against, sorted by edge."""
     order = np.lexsort((ring, edge))
     edge, ring, sign = edge[order], ring[order], sign[order]
     start = np.flatnonzero(np.append(True, (edge[1:] != edge[:-1]) | (ring[1:] != ring[:-1])))
@@ -72,7 +72,7 @@ def net_passes(edge: Int64s, sign: Int64s, ring: Int64s) -> Passes:
 
 
 def walk(faces: Faces) -> tuple[Int64s, Int64s, Int64s]:
-    """All faces but the outside in an order of visit; where from, and through which edge."""
+    """Return an order of all faces but the outside, the face before each, and the edge between."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import breadth_first_order
 
@@ -85,5 +85,5 @@ def walk(faces: Faces) -> tuple[Int64s, Int64s, Int64s]:
     order, before = breadth_first_order(graph, 0, directed=False)
     order = order[1:].astype(np.int64)
     before = before[order].astype(np.int64)
-    wanted = np.minimum(order, before) * n + np.maximum(order, before)
-    return order, before, first[np.searchsorted(keys, wanted)]
+    face_pairs = np.minimum(order, before) * n + np.maximum(order, before)
+    return order, before, first[np.searchsorted(keys, face_pairs)]

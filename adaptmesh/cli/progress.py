@@ -28,7 +28,7 @@ class TerminalProgress:
     Examples
     --------
     >>> import adaptmesh as am
-    >>> from adaptmesh.progress import TerminalProgress
+    >>> from adaptmesh.cli.progress import TerminalProgress
     >>> with TerminalProgress() as progress:
     ...     mesh = am.generate(am.Domain.rectangle(0, 0, 2, 1), 0.05, progress=progress)
     """

@@ -1,8 +1,7 @@
-"""Parametrised planar curves: what bounds a domain, separates its regions, or lies inside it.
+"""Parametrised planar curves for the boundaries and interfaces of domains.
 
-Each is a function of t in [0, 1]. They are those of drawings and of numerical libraries; splines
-are evaluated by scipy, and `Parametric` takes any function. `adaptmesh.Domain.from_curves` makes a
-domain of them.
+Each is a function of t in [0, 1]: lines, arcs, Bézier curves, splines (evaluated by scipy), and any
+function as `Parametric`. `adaptmesh.Domain.from_curves` makes a domain of curves.
 """
 
 from .conics import Arc, Circle, EllipticArc

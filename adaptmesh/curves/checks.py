@@ -1,4 +1,4 @@
-"""What is asked of the points that curves are made of."""
+"""Checks of the points that define curves."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats
 
 
-def checked_points(points: ArrayLike, what: str, least: int) -> Floats:
-    """The points of a curve, (n, 2), or a `DomainError` that names it."""
+def checked_points(points: ArrayLike, what: str, min_count: int) -> Floats:
+    """Return the points of a curve as an (n, 2) array; raise `DomainError` with its name."""
     try:
         out = checks.checked_points(points, "point", least=0)
     except DomainError as error:
         raise DomainError(f"{what}: {error}") from None
-    if len(out) < least:
-        raise DomainError(f"{what}: {len(out)} points; at least {least} are needed")
+    if len(out) < min_count:
+        raise DomainError(f"{what}: expected at least {min_count} points, got {len(out)}")
     return out
 
 
 def checked_point(point: ArrayLike, what: str) -> Floats:
     out = np.array(point, dtype=np.float64)
     if out.shape != (2,) or not np.isfinite(out).all():
-        raise DomainError(f"{what}: {point!r} is no pair of finite numbers")
+        raise DomainError(f"{what}: expected two finite numbers, got {point!r}")
     if np.abs(out).max() > checks.LARGEST:
         raise DomainError(
             f"{what}: {point!r} is beyond {checks.LARGEST:g}, where areas overflow; choose "

@@ -21,12 +21,13 @@ class EllipticArc(Curve):
     ----------
     centre : (x, y)
     semi_axes : (a, b)
-        Half the lengths of the axes.
+        Half the lengths of the axes, positive.
     rotation : float
         Angle of the first axis with the x axis, in radians.
     start_angle, end_angle : float
-        Eccentric angles (those of the circle that the ellipse is an image of) from the first axis,
-        in radians; anticlockwise if the end is larger. A full turn makes a closed curve.
+        Eccentric angles from the first axis, in radians; the point at angle s is centre +
+        a cos s (first axis) + b sin s (second axis). Anticlockwise if the end is larger. A full
+        turn makes a closed curve.
     """
 
     def __init__(
@@ -43,12 +44,13 @@ class EllipticArc(Curve):
         self.rotation, self.start_angle = float(rotation), float(start_angle)
         self.turn = float(end_angle) - self.start_angle
         if not (self.semi_axes > 0).all():
-            raise DomainError(f"{what}: radius {self.semi_axes.min():g} is not positive")
+            raise DomainError(f"{what}: expected positive radii, got {self.semi_axes.min():g}")
         if not np.isfinite([self.rotation, self.start_angle, self.turn]).all():
             raise DomainError(f"{what}: angles must be finite")
         if self.turn == 0 or abs(self.turn) > FULL_TURN * (1 + 1e-12):
             raise DomainError(
-                f"{what}: it turns by {self.turn:g} radians; between 0 and 2 pi is wanted"
+                f"{what}: expected a turn between 0 and 2 pi radians in either direction, "
+                f"got {self.turn:g}"
             )
         self.is_closed = abs(self.turn) > FULL_TURN * (1 - 1e-12)
         c, s = np.cos(self.rotation), np.sin(self.rotation)
@@ -81,7 +83,7 @@ class Arc(EllipticArc):
 
     @classmethod
     def through(cls, a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Arc:
-        """The arc from a to c through b."""
+        """Make the arc from a to c through b."""
         p = [checked_point(q, "Arc") for q in (a, b, c)]
         u, v = p[1] - p[0], p[2] - p[0]
         cross = u[0] * v[1] - u[1] * v[0]
@@ -100,7 +102,7 @@ class Arc(EllipticArc):
 
 
 class Circle(Arc):
-    """A circle, anticlockwise from the point in direction x; that point stays a vertex."""
+    """A circle, anticlockwise from its point at angle 0, which is a vertex of every mesh."""
 
     def __init__(self, centre: ArrayLike, radius: float) -> None:
         super().__init__(centre, radius, 0.0, FULL_TURN)

@@ -1,4 +1,4 @@
-"""What a curve is: a function of t in [0, 1] with ends and kinks."""
+"""The base class of curves: a function of t in [0, 1] with ends and kinks."""
 
 from __future__ import annotations
 
@@ -14,40 +14,40 @@ from adaptmesh.value import Value
 
 
 class Curve(Value, ABC):
-    """A planar curve: a function of t in [0, 1], smooth but for its `breaks`.
+    """A planar curve: a function of t in [0, 1], smooth between its `breaks`.
 
-    A subclass gives `_point` and `_derivative` of t (n,); what it returns is checked here.
+    A subclass defines `_point` and `_derivative` of t (n,); their results are checked here.
     """
 
     is_closed: bool = False
-    """Whether it ends where it begins, smoothly."""
+    """Whether the curve ends where it starts, and is smooth there."""
 
     is_straight: bool = False
-    """Whether it is a straight line with uniform speed between its breaks."""
+    """Whether the curve is a straight line of constant speed between its breaks."""
 
     @property
     def breaks(self) -> Floats:
-        """Where it has kinks, (k,), ascending, inside (0, 1)."""
+        """Parameters of its kinks, (k,), ascending, inside (0, 1)."""
         return np.empty(0)
 
     @property
     def knots(self) -> Floats:
-        """Where its pieces meet, (k,), ascending, inside (0, 1): it is analytic between them."""
+        """Parameters between its analytic pieces, (k,), ascending, inside (0, 1)."""
         return self.breaks
 
     def point(self, t: ArrayLike) -> Floats:
-        """Points (n, 2) at t (n,).
+        """Return the points (n, 2) at parameters t (n,).
 
         Raises
         ------
         DomainError
-            If the curve is not finite there.
+            If a point is not finite.
         """
         t = np.atleast_1d(np.asarray(t, np.float64))
         return self._checked(self._point(t), t, "point")
 
     def derivative(self, t: ArrayLike) -> Floats:
-        """Derivatives by t (n, 2) at t (n,); at a break, that of the side of larger t."""
+        """Return the derivatives (n, 2) by t at t (n,); at a break, the one from the right."""
         t = np.atleast_1d(np.asarray(t, np.float64))
         return self._checked(self._derivative(t), t, "derivative")
 
@@ -62,11 +62,14 @@ class Curve(Value, ABC):
         return self.start if self.is_closed else self.point(1.0)[0]
 
     def reversed(self) -> Curve:
-        """The same curve, run through backwards."""
+        """Return the same curve in the opposite direction."""
         return Part(self, 1.0, 0.0)
 
     def part(self, t0: float, t1: float) -> Curve:
-        """The part from t0 to t1, backwards if t1 < t0; to cut a curve where another one ends."""
+        """Return the part from t0 to t1, in the opposite direction if t1 < t0.
+
+        Use it to divide a curve at the end of another one.
+        """
         return Part(self, t0, t1)
 
     @abstractmethod
@@ -80,7 +83,7 @@ class Curve(Value, ABC):
         if len(bad):
             x, y = values[bad[0]]
             raise DomainError(
-                f"{self!r}: its {what} at t = {t[bad[0]]:.17g} is ({x}, {y}), not finite"
+                f"{self!r}: expected a finite {what} at t = {t[bad[0]]:.17g}, got ({x}, {y})"
             )
         return values
 
@@ -89,23 +92,26 @@ class Curve(Value, ABC):
 
 
 class Part(Curve):
-    """A part of a curve, forwards or backwards; see `Curve.part`."""
+    """A part of a curve in either direction; see `Curve.part`."""
 
     def __init__(self, whole: Curve, t0: float, t1: float) -> None:
         if not (0 <= t0 <= 1 and 0 <= t1 <= 1 and t0 != t1):
-            raise DomainError(f"{whole!r}: no part from t = {t0} to {t1}; 0 <= t <= 1, different")
+            raise DomainError(
+                f"{whole!r}: expected two different parameters of a part, from 0 to 1, "
+                f"got {t0} and {t1}"
+            )
         self.whole, self.t0, self.t1 = whole, float(t0), float(t1)
         self.is_straight = whole.is_straight
         self.is_closed = whole.is_closed and abs(t1 - t0) == 1
 
     @property
     def breaks(self) -> Floats:
-        """The kinks of the whole that lie in the part."""
+        """Parameters of the kinks of the whole curve inside the part."""
         return self._inside(self.whole.breaks)
 
     @property
     def knots(self) -> Floats:
-        """The knots of the whole that lie in the part."""
+        """Parameters of the knots of the whole curve inside the part."""
         return self._inside(self.whole.knots)
 
     def _inside(self, t_of_whole: Floats) -> Floats:
@@ -119,7 +125,7 @@ class Part(Curve):
         return (self.t1 - self.t0) * self.whole.derivative(self._of_whole(t))
 
     def _of_whole(self, t: Floats) -> Floats:
-        # both ends exactly
+        # exact at both ends
         return np.where(t == 1, self.t1, self.t0 + t * (self.t1 - self.t0))
 
     def __repr__(self) -> str:

@@ -12,13 +12,13 @@ from .curve import Curve
 
 
 class Polyline(Curve):
-    """Straight lines through points, each of which stays a vertex.
+    """Straight lines through points, each of which is a vertex of every mesh.
 
     Parameters
     ----------
     points : (n, 2) array_like
     closed : bool
-        Whether a last line leads back to the first point.
+        Whether a last line returns to the first point.
     """
 
     is_straight = True
@@ -29,12 +29,12 @@ class Polyline(Curve):
             p = np.concatenate([p, p[:1]])
         check_distinct(p, type(self).__name__)
         self.points = p
-        # its closing point is a kink like the others: where a polyline is cut, it stays a vertex
+        # the first point is a corner, too: a polyline divided there keeps it as a vertex
         self.is_closed = closed
 
     @property
     def breaks(self) -> Floats:
-        """The parameters of all points but the ends; each line takes an equal share of t."""
+        """Parameters of all points but the ends; each line has an equal part of [0, 1]."""
         return np.arange(1, len(self.points) - 1) / (len(self.points) - 1)
 
     def _point(self, t: Floats) -> Floats:

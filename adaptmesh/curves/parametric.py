@@ -13,13 +13,13 @@ from adaptmesh.types import Floats
 from .curve import Curve
 
 CLOSED = 1e-9
-"""The ends of a closed `Parametric` curve may be apart by this share of its size."""
+"""Largest gap between the ends of a closed `Parametric` curve, relative to its size."""
 
-LOOKS = 65
-"""A function is looked at in so many places before it is taken for a curve."""
+N_SAMPLES = 65
+"""Number of parameters at which the function and its derivative are checked at first."""
 
 DIFFERENCE = 1e-6
-"""Step of the differences that stand for a derivative not given."""
+"""Step of the finite differences that replace a missing derivative."""
 
 
 class Parametric(Curve):
@@ -28,13 +28,14 @@ class Parametric(Curve):
     Parameters
     ----------
     function : callable
-        Of t (n,) in [0, 1], returning points (n, 2).
+        Maps t (n,) in [0, 1] to points (n, 2).
     derivative : callable, optional
-        Its derivative, (n,) -> (n, 2). If not given, taken by differences.
+        Its derivative, (n,) -> (n, 2); by finite differences if not given.
     closed : bool
-        Whether it ends where it begins, smoothly. A curve that comes back with a corner is open.
+        Whether the curve ends where it starts and is smooth there. A curve with a corner there is
+        not closed.
     breaks : (k,) array_like
-        Where it has kinks, inside (0, 1); each becomes a vertex.
+        Parameters of its kinks, inside (0, 1); each becomes a vertex.
     """
 
     def __init__(
@@ -47,41 +48,43 @@ class Parametric(Curve):
         self.function, self._given_derivative, self.is_closed = function, derivative, closed
         self._breaks = np.unique(np.asarray(breaks, np.float64))
         if not ((self._breaks > 0) & (self._breaks < 1)).all():
-            raise DomainError(f"{self!r}: breaks must lie inside (0, 1)")
-        t = np.linspace(0, 1, LOOKS)
-        seen = self.point(t)
-        size = float(np.ptp(seen, axis=0).max())
+            raise DomainError(f"{self!r}: expected breaks inside (0, 1), got {self._breaks}")
+        t = np.linspace(0, 1, N_SAMPLES)
+        points = self.point(t)
+        size = float(np.ptp(points, axis=0).max())
         if size == 0:
-            raise DomainError(f"{self!r} has no length: it stays at ({seen[0, 0]}, {seen[0, 1]})")
-        gap = float(np.hypot(*(seen[-1] - seen[0])))
+            raise DomainError(
+                f"{self!r} has no length: all points are ({points[0, 0]}, {points[0, 1]})"
+            )
+        gap = float(np.hypot(*(points[-1] - points[0])))
         if closed and gap > CLOSED * size:
             raise DomainError(
-                f"{self!r} is said to be closed, but ends {gap:g} from where it begins, "
-                f"({seen[0, 0]:g}, {seen[0, 1]:g})"
+                f"{self!r}: closed=True, but its end is {gap:g} away from its start, "
+                f"({points[0, 0]:g}, {points[0, 1]:g})"
             )
         self.derivative(t)
 
     @property
     def breaks(self) -> Floats:
-        """As given."""
+        """Parameters of its kinks, as given."""
         return self._breaks
 
     def _point(self, t: Floats) -> Floats:
-        return self._returned(self.function(t), len(t), "function")
+        return self._checked_result(self.function(t), len(t), "function")
 
     def _derivative(self, t: Floats) -> Floats:
         if self._given_derivative is not None:
-            return self._returned(self._given_derivative(t), len(t), "derivative")
+            return self._checked_result(self._given_derivative(t), len(t), "derivative")
         low, high = np.maximum(t - DIFFERENCE, 0), np.minimum(t + DIFFERENCE, 1)
-        low = np.where(np.isin(t, self._breaks), t, low)  # no differences across a kink
+        low = np.where(np.isin(t, self._breaks), t, low)  # one-sided at a kink
         return (self._point(high) - self._point(low)) / (high - low)[:, None]
 
-    def _returned(self, values: ArrayLike, n: int, what: str) -> Floats:
+    def _checked_result(self, values: ArrayLike, n: int, what: str) -> Floats:
         out = np.asarray(values, np.float64)
         if out.shape != (n, 2):
             raise DomainError(
-                f"{self!r}: its {what} returned an array of shape {out.shape} for {n} parameters; "
-                f"({n}, 2) is wanted"
+                f"{self!r}: expected its {what} to return an array of shape ({n}, 2) for {n} "
+                f"parameters, got {out.shape}"
             )
         return out
 

@@ -1,4 +1,4 @@
-"""Curves given by control points or by points to pass through; scipy evaluates them."""
+"""Curves defined by control points or interpolated points, evaluated by scipy."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Bezier(Curve):
-    """The Bézier curve of control points (n + 1, 2), of degree n."""
+    """The Bézier curve of degree n with control points (n + 1, 2)."""
 
     def __init__(self, control_points: ArrayLike) -> None:
         self.control_points = checked_points(control_points, "Bezier", 2)
@@ -42,12 +42,12 @@ class Spline(Curve):
     ----------
     points : (n, 2) array_like
     closed : bool
-        Whether it is periodic: it leads back to the first point, smoothly. To come back with a
-        corner (the trailing edge of an aerofoil), repeat the first point and leave this out.
+        Whether the spline is periodic: smooth at the first point, to which it returns. For a
+        corner there (the trailing edge of an aerofoil), repeat the first point instead.
 
     Notes
     -----
-    Parametrised by the lengths of the chords; at open ends not-a-knot.
+    Parametrised by chord length, with not-a-knot conditions at open ends.
     """
 
     def __init__(self, points: ArrayLike, closed: bool = False) -> None:
@@ -86,12 +86,13 @@ class BSpline(Curve):
     control_points : (n, 2) array_like
     degree : int
     knots : (n + degree + 1,) array_like, optional
-        Ascending; the curve is that between knots[degree] and knots[n]. If not given, equidistant,
-        and so that the curve begins and ends at its outer control points.
+        Ascending; the curve goes from knots[degree] to knots[n]. By default equidistant and
+        clamped: the curve starts and ends at its first and last control points.
     weights : (n,) array_like, optional
-        Positive.
+        Positive; all 1 by default.
     closed : bool
-        Whether the control points are periodic: the curve closes smoothly. Without `knots`.
+        Whether the control points are periodic, so that the curve is closed and smooth. Not
+        together with `knots`.
     """
 
     def __init__(
@@ -105,18 +106,20 @@ class BSpline(Curve):
         p = checked_points(control_points, "BSpline", 2)
         if degree != int(degree) or degree < 1 or len(p) < degree + 1 - (1 if closed else 0):
             raise DomainError(
-                f"BSpline: degree {degree} with {len(p)} control points; a degree from 1 on and at "
-                "least one point more are wanted"
+                f"BSpline: expected a degree of at least 1 and more control points than that, "
+                f"got degree {degree} and {len(p)} points"
             )
         w = np.ones(len(p)) if weights is None else np.array(weights, np.float64)
         if w.shape != (len(p),) or not (np.isfinite(w) & (w > 0)).all():
-            raise DomainError(f"BSpline: weights must be {len(p)} positive numbers")
+            raise DomainError(f"BSpline: expected {len(p)} positive weights, got {weights!r}")
         if (p == p[0]).all():
             raise DomainError("BSpline: its control points are all the same")
         self.degree, self.is_closed = int(degree), closed
         if closed:
             if knots is not None:
-                raise DomainError("BSpline: a closed one has equidistant knots; leave `knots` out")
+                raise DomainError(
+                    "BSpline: a closed curve has equidistant knots; leave `knots` out"
+                )
             p, w = (np.concatenate([a, a[:degree]]) for a in (p, w))
         self.control_points, self.weights = p, w
         self._u = self._checked_knots(knots)
@@ -132,18 +135,18 @@ class BSpline(Curve):
 
     @property
     def breaks(self) -> Floats:
-        """The knots where it is but continuous: those as many as its degree."""
+        """Parameters of the knots of full multiplicity, where the curve is only continuous."""
         knots, times = self._inner_knots
         return knots[times >= self.degree]
 
     @property
     def knots(self) -> Floats:
-        """The knots inside (0, 1)."""
+        """Parameters of the knots inside (0, 1)."""
         return self._inner_knots[0]
 
     @property
     def _inner_knots(self) -> tuple[Floats, NDArray[np.intp]]:
-        """Those inside (0, 1), each once, and how many times each is there."""
+        """Distinct knots inside (0, 1), and the multiplicity of each."""
         inner = self._u[(self._u > 0) & (self._u < 1)]
         return np.unique(inner, return_counts=True)
 
@@ -156,11 +159,13 @@ class BSpline(Curve):
             return np.concatenate([np.zeros(k + 1), inner, np.ones(k + 1)])
         u = np.array(knots, np.float64)
         if u.shape != (n + k + 1,):
-            raise DomainError(f"BSpline: {u.size} knots; {n} points of degree {k} need {n + k + 1}")
+            raise DomainError(
+                f"BSpline: expected {n + k + 1} knots for degree {k} and {n} points, got {u.size}"
+            )
         bad = np.flatnonzero(~(np.diff(u) >= 0))
         if len(bad) or not np.isfinite(u).all() or not u[k] < u[n]:
-            at = f" after knot {bad[0]}" if len(bad) else ""
-            raise DomainError(f"BSpline: knots must be finite and ascend{at}")
+            where = f" after knot {bad[0]}" if len(bad) else ""
+            raise DomainError(f"BSpline: knots must be finite and ascending{where}")
         return (u - u[k]) / (u[n] - u[k])
 
     def _with_coefficients(self, coefficients: Floats) -> ScipyBSpline:
@@ -179,7 +184,7 @@ class BSpline(Curve):
 
 
 def _de_casteljau(control: Floats, t: Floats) -> Floats:
-    """The Bézier curve of control points (n, 2) at t (m,): stable at any degree."""
+    """Evaluate the Bézier curve of control points (n, 2) at t (m,); stable at any degree."""
     s = t[:, None, None]
     p = np.broadcast_to(control, (len(t), *control.shape))
     while p.shape[1] > 1:

@@ -14,7 +14,8 @@ from heapq import heappop, heappush
 
 import numpy as np
 
-from adaptmesh.arrangement import NOWHERE, Faces, Repair
+from adaptmesh.arrangement.faces import Faces
+from adaptmesh.arrangement.record import NOWHERE, Repair
 from adaptmesh.arrangement.winding import Passes, winding_changes
 from adaptmesh.types import Int64s
 
@@ -39,7 +40,7 @@ def owners_of_faces(
     edges : (e, 2) array
         Between the faces.
     passes : (edge, ring, net) arrays
-        Of rings along edges, as `arrangement.winding.net_passes` returns them.
+        Of rings along edges, as `arrangement.winding.sum_passes` returns them.
     shapes : sequence of Shape
     rings : list of Ring
     log : list of Repair
@@ -195,6 +196,6 @@ class _Oddities:
         for (kind, key), found in sorted(self.found.items(), key=lambda item: min(item[1])):
             faces = sorted(found)
             area = float(self.faces.areas[faces].sum())
-            x, y = self.faces.places[max(faces, key=lambda f: self.faces.areas[f])].tolist()
+            x, y = self.faces.inner_points[max(faces, key=lambda f: self.faces.areas[f])].tolist()
             out.append(Repair(kind, (x, y), f"{self.texts[kind, key]} an area of {area:.6g}"))
         return out

@@ -15,7 +15,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from adaptmesh.arrangement import Faces
+from adaptmesh.arrangement.faces import Faces
 from adaptmesh.arrangement.winding import Passes, winding_changes
 from adaptmesh.types import Int64s
 
@@ -31,7 +31,7 @@ def hole_depths(faces: Faces, edges: Int64s, passes: Passes, rings: list[Ring]) 
     edges : (e, 2) array
         Between the faces.
     passes : (edge, ring, net) arrays
-        As `arrangement.winding.net_passes` returns them.
+        As `arrangement.winding.sum_passes` returns them.
     rings : list of Ring
     """
     meeting = _meeting_holes(edges, passes, rings)

@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh.arrangement import Faces, Repair, Repairs, find_faces, node, used_tolerance
-from adaptmesh.arrangement.winding import Passes, net_passes
+from adaptmesh.arrangement.faces import Faces, find_faces
+from adaptmesh.arrangement.noding import node, resolve_tolerance
+from adaptmesh.arrangement.record import Repair, Repairs
+from adaptmesh.arrangement.winding import Passes, sum_passes
 from adaptmesh.errors import DomainError
 from adaptmesh.topology import unique_edges, used_points
 from adaptmesh.types import Floats, Int64s
@@ -74,8 +76,8 @@ def repaired_shapes(shapes: Sequence[Shape], tolerance: float | None) -> tuple[G
         raise DomainError("there are no polygons to make a domain of")
     log: list[Repair] = []
     rings = rings_of(shapes, log)
-    tolerance = used_tolerance(rings.points, tolerance)
-    noded = node(rings.points, rings.segments, tolerance, rings.words(), log)
+    tolerance = resolve_tolerance(rings.points, tolerance)
+    noded = node(rings.points, rings.segments, tolerance, rings.labels(), log)
     used, pieces = used_points(noded.pieces)
     points = noded.points[used]
     edges, edge, sign = unique_edges(pieces)
@@ -84,14 +86,14 @@ def repaired_shapes(shapes: Sequence[Shape], tolerance: float | None) -> tuple[G
             f"no polygon is wider than the tolerance, {tolerance:.3g}: there is nothing to mesh"
         )
     faces = find_faces(points, edges)
-    passes = net_passes(edge, sign, rings.ring[noded.segment])
+    passes = sum_passes(edge, sign, rings.ring[noded.segment])
     owner = owners_of_faces(faces, edges, passes, shapes, rings.rings, log)
     kept = owner[faces.left] != owner[faces.right]
     _record_what_is_dropped(points, edges, kept, rings, passes, log)
     if not kept.any():
         raise DomainError(f"there is nothing to mesh: {log[-1]}")
     given = _given(points, edges, kept, faces, owner, shapes)
-    return given, Repairs(tuple(log), tolerance, noded.drift(rings.points, rings.segments))
+    return given, Repairs(tuple(log), tolerance, noded.displacement(rings.points, rings.segments))
 
 
 def _record_what_is_dropped(
@@ -134,10 +136,10 @@ def _given(
     shapes: Sequence[Shape],
 ) -> Given:
     """What makes the domain of the faces that have an owner, with a region for each name."""
-    united = faces.united(~kept)
-    _, first = np.unique(united, return_index=True)
-    first = first[united[first] != united[0]]  # the outside needs no point
-    places, owners = faces.places[first], owner[first]
+    merged = faces.merge_across(~kept)
+    _, first = np.unique(merged, return_index=True)
+    first = first[merged[first] != merged[0]]  # the outside needs no point
+    places, owners = faces.inner_points[first], owner[first]
     faces_of: dict[str, list[int]] = {shape.name: [] for shape in shapes if shape.name is not None}
     for face, o in enumerate(owners.tolist()):
         name = shapes[o].name if o >= 0 else None

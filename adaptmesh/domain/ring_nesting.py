@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh.arrangement import Repair, find_faces
-from adaptmesh.arrangement.winding import net_passes
+from adaptmesh.arrangement.faces import find_faces
+from adaptmesh.arrangement.record import Repair
+from adaptmesh.arrangement.winding import sum_passes
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats, Int64s
 
@@ -52,7 +53,7 @@ def refuse_rings_out_of_place(
         The ring of each piece.
     """
     edges = pieces.astype(np.int64)
-    passes = net_passes(np.arange(len(edges)), np.where(along, 1, -1), ring)
+    passes = sum_passes(np.arange(len(edges)), np.where(along, 1, -1), ring)
     log: list[Repair] = []
     owners_of_faces(find_faces(points, edges), edges, passes, [shape], rings, log)
     if log:

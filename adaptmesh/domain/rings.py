@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from adaptmesh.arrangement import NOWHERE, Repair, Words, at, first_of_equal
+from adaptmesh.arrangement.noding import Labels
+from adaptmesh.arrangement.record import NOWHERE, Repair, point_text
 from adaptmesh.checks import LARGEST
 from adaptmesh.errors import DomainError
+from adaptmesh.geometry.distance import first_of_equal
 from adaptmesh.types import Floats, Int64s
 
 from .shape import Shape
@@ -66,7 +68,7 @@ class Rings:
     ring: Int64s
     number: Int64s
 
-    def words(self) -> Words:
+    def labels(self) -> Labels:
         """How to call the points and segments."""
         order = np.argsort(self.segments[:, 0], kind="stable")  # the first that starts there
         start = self.segments[order, 0]
@@ -78,7 +80,7 @@ class Rings:
             i = order[np.searchsorted(start, v)]
             return f"point {self.number[i]} of {self.rings[self.ring[i]].label}"
 
-        return Words(point, segment)
+        return Labels(point, segment)
 
 
 def rings_of(shapes: Sequence[Shape], log: list[Repair]) -> Rings:
@@ -174,7 +176,9 @@ def _closed(
     elif len(points) > 1 and must_close:
         x, y = points[-1].tolist()
         gap = float(np.hypot(*(points[0] - points[-1])))
-        what = f"{label} ends {gap:.3g} from its start, {at(*points[0])}; closed by a segment"
+        what = (
+            f"{label} ends {gap:.3g} from its start, {point_text(*points[0])}; closed by a segment"
+        )
         log.append(Repair("ring not closed", (x, y), what))
     again = (points == np.roll(points, 1, axis=0)).all(axis=1)
     if len(points) > 1 and again.any():

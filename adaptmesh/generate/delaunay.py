@@ -1,4 +1,4 @@
-"""Delaunay triangulation of points, exactly."""
+"""Exact Delaunay triangulation of points."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ __all__ = ["delaunay"]
 
 
 def delaunay(points: ArrayLike) -> NDArray[np.int32]:
-    """Triangulate the convex hull of points so that no circumcircle has a point in it.
+    """Compute the Delaunay triangulation of points.
 
-    The predicates are exact: the result is a triangulation, and is Delaunay, for any finite
-    coordinates. Of points on one circle any triangulation counts. The same points give the same
-    triangles in the same order.
+    No circumcircle has a point in its interior. The predicates are exact, so that this holds for
+    any finite coordinates; cocircular points are triangulated in one of the possible ways. The same
+    points give the same triangles in the same order.
 
     Parameters
     ----------
@@ -27,8 +27,8 @@ def delaunay(points: ArrayLike) -> NDArray[np.int32]:
     Returns
     -------
     (m, 3) array of int32
-        The triangles, as numbers of their points, counter-clockwise. A point equal to one with a
-        lower number is in no triangle.
+        Indices of the points of each triangle, counter-clockwise. Of equal points only the first
+        is used.
 
     Raises
     ------
@@ -62,12 +62,12 @@ def delaunay(points: ArrayLike) -> NDArray[np.int32]:
     try:
         triangles, _ = core_delaunay(array)
     except Fault as fault:
-        # Everything else was checked above.
+        # Collinear points are the only fault that was not excluded above.
         low, high = array.min(axis=0), array.max(axis=0)
         raise DomainError(
             f"all {len(array)} points lie exactly on one line, between ({low[0]:.17g}, "
             f"{low[1]:.17g}) and ({high[0]:.17g}, {high[1]:.17g}); "
-            "add a point off the line."
+            "add a point off the line"
         ) from fault
     return triangles
 
@@ -75,18 +75,18 @@ def delaunay(points: ArrayLike) -> NDArray[np.int32]:
 def _checked(points: ArrayLike) -> NDArray[np.float64]:
     raw = np.asarray(points)
     if raw.dtype.kind not in "biuf":
-        raise DomainError(f"points must be real numbers, not an array of type {raw.dtype}.")
+        raise DomainError(f"points: expected real numbers, got an array of type {raw.dtype}")
     array = np.ascontiguousarray(raw, dtype=np.float64)
     if array.ndim != 2 or array.shape[1] != 2:
-        raise DomainError(f"points must have shape (n, 2), one row each, not {array.shape}.")
+        raise DomainError(f"points: expected shape (n, 2), got {array.shape}")
     if len(array) < 3:
-        raise DomainError(f"at least 3 points are needed for a triangle; there are {len(array)}.")
+        raise DomainError(f"expected at least 3 points, got {len(array)}")
     bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
     if len(bad):
         i = int(bad[0])
         more = f" (and {len(bad) - 1} more)" if len(bad) > 1 else ""
         raise DomainError(
             f"point {i} at ({array[i, 0]}, {array[i, 1]}){more} is not finite; "
-            "remove it or give it coordinates."
+            "remove it or correct its coordinates"
         )
     return array

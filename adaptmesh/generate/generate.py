@@ -20,7 +20,7 @@ from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.types import Floats, Ints
 from metrics import ControlSpace
 
-from .prediction import Prediction, check_is_domain, predict, predicted
+from .prediction import Prediction, check_is_domain, predict, predict_with_samples
 
 MeshArrays = tuple[Floats, Ints, Ints, Ints, Ints]
 """Points, triangles, the label of each, constrained edges, the segment of each."""
@@ -86,7 +86,7 @@ def generate(
         field = graded_within_budget(domain, field, gradation, max_vertices)
 
     report("predicting the size", 0.0)
-    prediction = predicted(domain, field)
+    prediction = predict_with_samples(domain, field)
     limit = VertexLimit(max_vertices, prediction.count)
     limit.check_prediction()
     report("cutting the boundary", 0.02)

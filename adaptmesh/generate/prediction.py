@@ -1,4 +1,4 @@
-"""How many vertices a mesh will have, before it is made."""
+"""Prediction of the number of vertices of a mesh."""
 
 from __future__ import annotations
 
@@ -16,37 +16,52 @@ from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats, Ints
 from metrics import ControlSpace, tensor
 
-# A chord is followed more closely while its curve is off it by more than this, in metric length,
-# and it is longer than an edge would be.
-OFF_CHORD = 0.1
+MAX_SAGITTA = 0.1
+"""A chord longer than 1 in the metric is halved if its curve is farther off it than this length."""
 
-# With so many points no chord is halved any more: then sizes are far below the rounding of
-# coordinates, or the mesh is larger than any.
-MOST_POINTS = 20_000
+MAX_POINTS = 20_000
+"""No chord is halved beyond this number of points: then sizes are far too small for a mesh."""
 
 
 def predict(domain: Domain, metric: Any) -> int:
-    """The number of vertices that a mesh of the domain will have, before it is made.
+    """Predict the number of vertices of a mesh of the domain.
 
-    (2/sqrt 3) C + B/2 + 1, what a hexagonal lattice of unit edges would have: C is the complexity,
-    the integral of sqrt(det M), and B the metric length of the boundary. To about 5 %, except for
-    meshes of a few triangles; features far below their surroundings may hide from it. It is too low
-    where straight edges cannot follow the metric: where a layer bends by more than its thickness
-    along an edge.
+    The number is (2/sqrt 3) C + B/2 + 1, as for a hexagonal lattice of unit edges: C is the
+    complexity, the integral of sqrt(det M), and B the metric length of the boundary. Accurate to
+    about 5 %, except for meshes of a few triangles, and for features so small that the samples miss
+    them. The number is too low where straight edges cannot follow the metric: where a layer bends
+    by more than its thickness along an edge.
+
+    Parameters
+    ----------
+    domain : Domain
+    metric : number, callable, or control space
+        As for `generate`.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    DomainError
+        If `domain` is not a `Domain`.
+    MetricError
+        If the metric is not valid at a point of the domain.
     """
     check_is_domain(domain)
-    return predicted(domain, metrics.as_control_space(metric)).count
+    return predict_with_samples(domain, metrics.as_control_space(metric)).count
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """A number of vertices, and where the metric was asked for it.
+    """A number of vertices, and the samples of the metric that it was computed from.
 
     Attributes
     ----------
     count : int
     points, tensors : (n, 2), (n, 3) arrays
-        Samples of the metric: close to each other where it is large.
+        Samples of the metric, denser where it is larger.
     """
 
     count: int
@@ -54,19 +69,19 @@ class Prediction:
     tensors: Floats
 
 
-def predicted(domain: Domain, field: ControlSpace) -> Prediction:
-    """Predict as `predict` does, and keep the samples."""
+def predict_with_samples(domain: Domain, field: ControlSpace) -> Prediction:
+    """Predict as `predict` does, and return the samples as well."""
     samples = _Samples(field)
     polygon = _inscribed(domain, samples)
     complexity = metrics.complexity(polygon.points, polygon.triangles, samples).value
     boundary = metrics.edge_lengths(polygon.points, polygon.border, samples).sum()
-    least = max(3, int(domain.curved.is_vertex.sum()))
-    count = max(least, int(2 / np.sqrt(3) * complexity + boundary / 2) + 1)
+    min_count = max(3, int(domain.curved.is_vertex.sum()))
+    count = max(min_count, int(2 / np.sqrt(3) * complexity + boundary / 2) + 1)
     return Prediction(count, np.concatenate(samples.points), np.concatenate(samples.tensors))
 
 
 class _Samples(ControlSpace):
-    """A control space that writes down where it is asked, and what it answers."""
+    """A control space that records the points where it is evaluated, and the tensors there."""
 
     def __init__(self, field: ControlSpace) -> None:
         self._field = field
@@ -81,13 +96,13 @@ class _Samples(ControlSpace):
 
 
 def check_is_domain(domain: object) -> None:
-    """Refuse what is no domain."""
+    """Raise `DomainError` unless this is a `Domain`."""
     if not isinstance(domain, Domain):
-        raise DomainError(f"a Domain is wanted, not {type(domain).__name__}: see adaptmesh.Domain")
+        raise DomainError(f"expected a Domain, got {type(domain).__name__}: see adaptmesh.Domain")
 
 
 class _Polygon(NamedTuple):
-    """Points (n, 2), triangles (m, 3) whose areas add up, with signs, and edges of the border."""
+    """Points (n, 2), triangles (m, 3) of signed area, and the boundary edges of a polygon."""
 
     points: Floats
     triangles: Ints
@@ -95,14 +110,14 @@ class _Polygon(NamedTuple):
 
 
 def _inscribed(domain: Domain, field: ControlSpace) -> _Polygon:
-    r"""The domain, its curves followed as closely as the edges of the mesh will.
+    r"""Refine the polygon of the domain until it follows its curves as the mesh edges will.
 
     ::
 
-              m              The chord ab of the domain is replaced by am and mb, and the triangle
-            /   \            amb is added; it is taken away, being clockwise, where the curve is on
-          a-------b          the other side. A layer along the curve may be thinner than this
-           inside            triangle is high.
+              m              The chord ab is replaced by am and mb, and the triangle amb is added.
+            /   \            Where the curve is on the other side, the triangle is clockwise and
+          a-------b          its area counts as negative. This matters where a layer along the
+           inside            curve is thinner than the triangle is high.
     """
     curved = domain.curved
     border = domain.pieces[domain.piece_is_boundary]
@@ -123,7 +138,7 @@ def _inscribed(domain: Domain, field: ControlSpace) -> _Polygon:
         u_middle = u.mean(axis=1)
         new = points_on(curved.paths, run, u_middle)
         points, tensors = np.concatenate([points, new]), np.concatenate([tensors, field(new)])
-        halved = _is_coarse(points, tensors, chord, middle) & (len(points) < MOST_POINTS)
+        halved = _is_coarse(points, tensors, chord, middle) & (len(points) < MAX_POINTS)
         edges.append(chord[~halved])
         run, chord, middle = run[halved], chord[halved], middle[halved]
         triangles.append(np.column_stack([chord[:, 0], middle, chord[:, 1]]))
@@ -135,9 +150,9 @@ def _inscribed(domain: Domain, field: ControlSpace) -> _Polygon:
 
 
 def _is_coarse(points: Floats, tensors: Floats, chord: Ints, middle: Ints) -> NDArray[np.bool_]:
-    """Which chords (k, 2) are longer than unit and further off the curve than they should be."""
+    """Mark chords (k, 2) longer than 1 and farther from the curve than `MAX_SAGITTA`."""
     a, b = chord.T
     height = points[middle] - 0.5 * (points[a] + points[b])
     off = np.max([tensor.lengths(tensors[v], tensors[v], height) for v in (a, b, middle)], axis=0)
     length = tensor.lengths(tensors[a], tensors[b], points[b] - points[a])
-    return (off > OFF_CHORD) & (length > 1)
+    return (off > MAX_SAGITTA) & (length > 1)

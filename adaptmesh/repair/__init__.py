@@ -1,1 +1,1 @@
-"""Dirty input made into a clean domain, with a record of what was done."""
+"""Repair of dirty input, and simplification of domains."""

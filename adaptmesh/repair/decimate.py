@@ -1,4 +1,4 @@
-"""Points of chains of edges left out, so that nothing is swept over; the work is in the core."""
+"""Remove polyline vertices without changing the topology; the algorithm is in the core."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ from adaptmesh.types import Floats, Int64s
 
 @dataclass(frozen=True, eq=False)
 class Decimated:
-    """What is left of edges.
+    """Edges after decimation.
 
     Attributes
     ----------
     edges : (e, 2) array
-        Directed as the first of the edges that they replace.
+        Directed like the first of the edges that each replaces.
     source : (e,) array
-        The number of that edge.
-    passed : (d,) array
-        The points left out, those of one edge after those of another.
+        The index of that edge.
+    removed : (d,) array
+        The removed points, grouped by edge.
     starts : (e + 1,) array
-        Edge i passes by the points ``passed[starts[i]:starts[i + 1]]``.
+        Edge i replaces the points ``removed[starts[i]:starts[i + 1]]``.
     """
 
     edges: Int64s
     source: Int64s
-    passed: Int64s
+    removed: Int64s
     starts: Int64s
 
 
 def decimate(
     points: Floats, tensors: Floats, edges: Int64s, kind: Int64s, share: float
 ) -> Decimated:
-    """Leave out points between two edges of one kind.
+    """Remove points between two edges of one kind.
 
     Parameters
     ----------
@@ -43,15 +43,14 @@ def decimate(
     tensors : (n, 3) array
         The metric at the points.
     edges : (e, 2) array
-        They meet only at points.
+        They meet only at their ends.
     kind : (e,) array
-        A point is left out only between edges of the same kind, seen in the same direction; see
-        `turned`.
+        A point is removed only between edges of the same kind in the same direction; see `orient`.
     share : float
-        The most that a point may lie off the edge that replaces its own, as a length in the metric
-        at that point. Only ends of edges shorter than 1 in the metric are left out.
+        Largest distance of a removed point from the edge that replaces its own, in the metric at
+        that point. Only ends of edges shorter than 1 in the metric are removed.
     """
-    left, source, passed, starts = core_decimate(
+    left, source, removed, starts = core_decimate(
         np.ascontiguousarray(points),
         np.ascontiguousarray(tensors),
         edges.astype(np.int32),
@@ -59,12 +58,12 @@ def decimate(
         share,
     )
     return Decimated(
-        left.astype(np.int64), source.astype(np.int64), passed.astype(np.int64), starts
+        left.astype(np.int64), source.astype(np.int64), removed.astype(np.int64), starts
     )
 
 
-def turned(edges: Int64s, left: Int64s, right: Int64s) -> tuple[Int64s, Int64s, Int64s]:
-    """Edges turned so that the lower number is on their left, and their sides then."""
-    turn = left > right
-    edges = np.where(turn[:, None], edges[:, ::-1], edges)
+def orient(edges: Int64s, left: Int64s, right: Int64s) -> tuple[Int64s, Int64s, Int64s]:
+    """Direct edges so that the lower side number is on their left; return the new sides, too."""
+    is_reversed = left > right
+    edges = np.where(is_reversed[:, None], edges[:, ::-1], edges)
     return edges, np.minimum(left, right), np.maximum(left, right)

@@ -1,6 +1,6 @@
-"""What is inside lines that may be dirty, and which of them lie in holes: as the core decides it.
+"""Which faces between lines are in the domain, by the rules of `core/triangulation/carve.hpp`.
 
-`adaptmesh/core/carve.hpp` refuses what lies in a hole; a repair leaves it out.
+The core refuses lines in holes; the repair removes them.
 """
 
 from __future__ import annotations
@@ -9,13 +9,13 @@ from functools import cached_property
 
 import numpy as np
 
-from adaptmesh.arrangement import Faces
+from adaptmesh.arrangement.faces import Faces
 from adaptmesh.domain.inputs import Inside
 from adaptmesh.types import Bools, Floats
 
 
 class Lines:
-    """Edges that meet only at points, the faces between them, and what is said of holes."""
+    """Edges that meet only at their ends, the faces between them, and the holes given."""
 
     def __init__(self, faces: Faces, inside: Inside) -> None:
         self.faces = faces
@@ -24,16 +24,16 @@ class Lines:
 
     @cached_property
     def is_solid(self) -> Bools:
-        """Which faces are in the domain, (f,)."""
+        """Whether each face is in the domain, (f,)."""
         if not self.inside.nesting:
             out = np.ones(self.faces.count, bool)
             out[0] = False
-            out[self.faces.at(self.inside.holes)] = False
+            out[self.faces.locate(self.inside.holes)] = False
             return out
-        return self._nested()
+        return self._alternate_by_nesting()
 
-    def _nested(self) -> Bools:
-        """Over lines from outside inwards, the domain and holes take turns."""
+    def _alternate_by_nesting(self) -> Bools:
+        """Alternate between domain and hole at each line from the outside inwards."""
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import shortest_path
 
@@ -41,7 +41,7 @@ class Lines:
         graph = coo_array((np.ones(len(self.left)), (self.left, self.right)), shape=(n, n)).tocsr()
         depth = shortest_path(graph, directed=False, unweighted=True, indices=0)
         solid = np.zeros(n, bool)
-        solid[self.faces.at(self.inside.seeds)] = True
+        solid[self.faces.locate(self.inside.seeds)] = True
         solid[0] = False
         ends = np.stack([self.left, self.right], axis=1)
         inwards = ends[depth[self.left] != depth[self.right]]
@@ -55,16 +55,16 @@ class Lines:
 
     @cached_property
     def is_loose(self) -> Bools:
-        """Edges with the same face on both sides, outside of the domain."""
+        """Whether each edge has the same face, outside the domain, on both sides."""
         return (self.left == self.right) & ~self.is_solid[self.left]
 
     @cached_property
     def is_in_hole(self) -> Bools:
-        """Edges with holes, or a hole and the outside, on their sides.
+        """Whether each edge has holes, or a hole and the outside, on its sides.
 
-        A hole given by a point that reaches the outside over an edge, and has an edge within, may
-        be one whose border is open: then it is as well the domain that the point was not meant
-        for, and nothing is said of its edges.
+        A hole that shares an edge with the outside and has another edge in its interior may have
+        an open border, so that its seed spreads over a part of the domain. The edges beside such a
+        hole are left out here.
         """
         void = ~self.is_solid
         out: Bools = void[self.left] & void[self.right] & ((self.left > 0) | (self.right > 0))
@@ -76,6 +76,6 @@ class Lines:
         doubtful[0] = False
         return out & ~doubtful[self.left] & ~doubtful[self.right]
 
-    def contains(self, places: Floats) -> Bools:
-        """Which of the places are in the domain or on its border."""
-        return self.is_solid[self.faces.at(places)]
+    def contains(self, points: Floats) -> Bools:
+        """Whether each point is in the domain or on its border."""
+        return self.is_solid[self.faces.locate(points)]

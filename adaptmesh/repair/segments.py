@@ -1,4 +1,4 @@
-"""Dirty segments, with seeds of holes and regions and with names, made into a domain."""
+"""Repair of segments with names and with seeds of holes and regions."""
 
 from __future__ import annotations
 
@@ -6,16 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from adaptmesh.arrangement import (
-    Noded,
-    Repair,
-    Repairs,
-    Words,
-    at,
-    find_faces,
-    node,
-    used_tolerance,
-)
+from adaptmesh.arrangement.faces import find_faces
+from adaptmesh.arrangement.noding import Labels, Noded, node, resolve_tolerance
+from adaptmesh.arrangement.record import Repair, Repairs, point_text
 from adaptmesh.checks import checked_pairs, checked_points
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import Inside, checked_names, labelled, name_of_number
@@ -28,46 +21,44 @@ from adaptmesh.types import Bools, Floats, Int64s
 from .inside_lines import Lines
 
 
-def repaired_domain_of_segments(
-    outline: Outline, tolerance: float | None
-) -> tuple[Domain, Repairs]:
-    """A domain of points and segments, and what had to be done for it; see `adaptmesh.repair`."""
+def repair_segments(outline: Outline, tolerance: float | None) -> tuple[Domain, Repairs]:
+    """Make a domain of points and segments, and record the repairs; see `adaptmesh.repair`."""
     points = checked_points(outline.points, "point")
     segments = checked_pairs(outline.segments, len(points)).astype(np.int64)
     given, selectors = split_names(outline.names)
     names, tags32 = checked_names(given, len(segments), given=outline.tags)
     tags = tags32.astype(np.int64)
     inside = Inside.checked(outline.holes, outline.regions, outline.region_tags)
-    log = _segments_without_length(points, segments)
-    tolerance = used_tolerance(points, tolerance)
-    words = Words(lambda v: f"point {v}", lambda i: f"segment {i}")
-    noded = node(points, segments, tolerance, words, log)
-    drift = noded.drift(points, segments)
+    log = _record_segments_without_length(points, segments)
+    tolerance = resolve_tolerance(points, tolerance)
+    item_labels = Labels(lambda v: f"point {v}", lambda i: f"segment {i}")
+    noded = node(points, segments, tolerance, item_labels, log)
+    displacement = noded.displacement(points, segments)
 
     edges, edge_of_piece, _ = unique_edges(noded.pieces)
-    edge_tags = _tags(edge_of_piece, tags[noded.segment], len(edges))
-    log += _overlaps(noded, edges, edge_of_piece, edge_tags, tags, names)
+    edge_tags = _first_tags(edge_of_piece, tags[noded.segment], len(edges))
+    log += _record_overlaps(noded, edges, edge_of_piece, edge_tags, tags, names)
     if not len(edges):
-        raise DomainError("no segment is longer than the tolerance: there is nothing to mesh")
+        raise DomainError("no segment is longer than the tolerance: nothing is left to mesh")
     used, renumbered = used_points(edges)
     lines = Lines(find_faces(noded.points[used], renumbered), inside)
-    spikes = _spikes(noded, edges, edge_of_piece, lines, log)
-    kept = ~(spikes | _in_holes(noded, edges, lines, spikes, log))
+    spikes = _find_spikes(noded, edges, edge_of_piece, lines, log)
+    kept = ~(spikes | _find_lines_in_holes(noded, edges, lines, spikes, log))
     if np.count_nonzero(kept) < 3:
         raise DomainError(
-            f"there is nothing to mesh: {np.count_nonzero(kept)} segments are left, which enclose "
-            "nothing" + (f"; the last of what was done: {log[-1]}" if log else "")
+            f"nothing is left to mesh: {np.count_nonzero(kept)} segments remain, which enclose no "
+            "area" + (f"; the last repair: {log[-1]}" if log else "")
         )
-    lone = _lone_points_inside(noded, edges[kept], lines, log)
-    log += _lost_names(names, tags, edge_tags[kept], points, segments)
+    lone = _find_lone_points_inside(noded, edges[kept], lines, log)
+    log += _record_lost_names(names, tags, edge_tags[kept], points, segments)
     if log:
-        _check_seeds(inside, noded.points[edges], max(tolerance, drift))
-    domain = _domain(noded, edges[kept], edge_tags[kept], lone, outline, names)
+        _check_seeds(inside, noded.points[edges], max(tolerance, displacement))
+    domain = _make_domain(noded, edges[kept], edge_tags[kept], lone, outline, names)
     domain = domain.with_names(selectors) if selectors else domain
-    return domain, Repairs(tuple(log), tolerance, drift)
+    return domain, Repairs(tuple(log), tolerance, displacement)
 
 
-def _segments_without_length(points: Floats, segments: Int64s) -> list[Repair]:
+def _record_segments_without_length(points: Floats, segments: Int64s) -> list[Repair]:
     ends = points[segments]
     log = []
     for i in np.flatnonzero((ends[:, 0] == ends[:, 1]).all(axis=1)).tolist():
@@ -77,15 +68,15 @@ def _segments_without_length(points: Floats, segments: Int64s) -> list[Repair]:
     return log
 
 
-def _tags(edge: Int64s, tag: Int64s, count: int) -> Int64s:
-    """For each edge the tag of the first of its segments that has one."""
+def _first_tags(edge: Int64s, tag: Int64s, count: int) -> Int64s:
+    """Return for each edge the tag of the first of its segments that has one."""
     out = np.zeros(count, np.int64)
     named = np.flatnonzero(tag)[::-1]
-    out[edge[named]] = tag[named]  # of those with the same edge the last one written stays
+    out[edge[named]] = tag[named]  # the first segment of an edge is written last
     return out
 
 
-def _overlaps(
+def _record_overlaps(
     noded: Noded,
     edges: Int64s,
     edge: Int64s,
@@ -93,7 +84,7 @@ def _overlaps(
     tags: Int64s,
     names: Mapping[str, int],
 ) -> list[Repair]:
-    """Each pair of segments that have edges in common."""
+    """Record each pair of segments with common edges."""
     order = np.lexsort((noded.segment, edge))
     edge, segment = edge[order], noded.segment[order]
     again = np.append(False, edge[1:] == edge[:-1])
@@ -111,49 +102,55 @@ def _overlaps(
         tag = int(edge_tags[common[0]])
         if tags[j] not in (0, tag) or tags[i] not in (0, tag):
             loser = tags[j] if tags[j] not in (0, tag) else tags[i]
-            what += f", named {name_of[tag]!r} and not {name_of[int(loser)]!r}"
+            what += f", with the name {name_of[tag]!r} instead of {name_of[int(loser)]!r}"
         log.append(Repair("overlapping segments", (x, y), what))
     return log
 
 
-def _spikes(noded: Noded, edges: Int64s, edge: Int64s, lines: Lines, log: list[Repair]) -> Bools:
-    """Edges that were drawn more than once, and stick out of the domain."""
+def _find_spikes(
+    noded: Noded, edges: Int64s, edge: Int64s, lines: Lines, log: list[Repair]
+) -> Bools:
+    """Find edges drawn more than once that stick out of the domain."""
     doubled = np.bincount(edge, minlength=len(edges)) > 1
     spikes: Bools = doubled & lines.is_loose
     for i in np.flatnonzero(spikes).tolist():
-        place, length = _middle_and_length(noded, edges[i])
+        place, length = _measure_edge(noded, edges[i])
         what = f"a line drawn there and back sticks out of the domain by {length:.3g}; removed"
         log.append(Repair("spike", place, what))
     return spikes
 
 
-def _in_holes(noded: Noded, edges: Int64s, lines: Lines, spikes: Bools, log: list[Repair]) -> Bools:
-    """Edges in holes, or between two, that are no spikes."""
+def _find_lines_in_holes(
+    noded: Noded, edges: Int64s, lines: Lines, spikes: Bools, log: list[Repair]
+) -> Bools:
+    """Find edges in holes or between two holes, other than spikes."""
     lost = lines.is_in_hole & ~spikes
     for i in np.flatnonzero(lost).tolist():
-        place, length = _middle_and_length(noded, edges[i])
-        what = f"a line of length {length:.3g} is in a hole, where nothing is meshed; removed"
+        place, length = _measure_edge(noded, edges[i])
+        what = f"a line of length {length:.3g} is in a hole, which is not meshed; removed"
         log.append(Repair("line in a hole", place, what))
     return lost
 
 
-def _middle_and_length(noded: Noded, edge: Int64s) -> tuple[tuple[float, float], float]:
+def _measure_edge(noded: Noded, edge: Int64s) -> tuple[tuple[float, float], float]:
     p, q = noded.points[edge]
     x, y = (0.5 * (p + q)).tolist()
     return (x, y), float(np.hypot(*(q - p)))
 
 
-def _lone_points_inside(noded: Noded, edges: Int64s, lines: Lines, log: list[Repair]) -> Int64s:
-    """The points of no segment that lie in the domain, or on an edge of it."""
+def _find_lone_points_inside(
+    noded: Noded, edges: Int64s, lines: Lines, log: list[Repair]
+) -> Int64s:
+    """Find points of no segment that lie in the domain or on an edge of it."""
     lone = np.setdiff1d(noded.lone, edges)
     is_inside = lines.contains(noded.points[lone])
     for x, y in noded.points[lone[~is_inside]].tolist():
-        what = "a point of no segment is outside, or in a hole; removed"
+        what = "a point of no segment is outside or in a hole; removed"
         log.append(Repair("point outside", (x, y), what))
     return lone[is_inside]
 
 
-def _lost_names(
+def _record_lost_names(
     names: Mapping[str, int], tags: Int64s, left: Int64s, points: Floats, segments: Int64s
 ) -> list[Repair]:
     name_of = name_of_number(names, tags)
@@ -165,8 +162,8 @@ def _lost_names(
     return log
 
 
-def _check_seeds(inside: Inside, segments: Floats, reach: float) -> None:
-    """Refuse seeds that a segment may have been moved over."""
+def _check_seeds(inside: Inside, segments: Floats, distance: float) -> None:
+    """Raise `DomainError` for a seed so close to a segment that the repair may have crossed it."""
     import shapely
 
     name_of = name_of_number(inside.region_names, inside.seed_regions)
@@ -176,16 +173,16 @@ def _check_seeds(inside: Inside, segments: Floats, reach: float) -> None:
         return
     places = np.concatenate([inside.seeds, inside.holes])
     tree = shapely.STRtree(shapely.linestrings(segments))
-    near = tree.query(shapely.points(places), predicate="dwithin", distance=reach)[0]
+    near = tree.query(shapely.points(places), predicate="dwithin", distance=distance)[0]
     if len(near):
         k = int(near.min())
         raise DomainError(
-            f"{labels[k]} at {at(*places[k])} is within {reach:.3g} of a segment, so that the "
-            "repair may have put it on the other side: move it away from segments"
+            f"{labels[k]} at {point_text(*places[k])} is within {distance:.3g} of a segment, which "
+            "the repair may have moved across it: move it away from segments"
         )
 
 
-def _domain(
+def _make_domain(
     noded: Noded,
     edges: Int64s,
     edge_tags: Int64s,

@@ -1,4 +1,4 @@
-"""Detail of a domain that is far below the size asked for, left out."""
+"""`simplify`: remove detail of a domain that is far below the requested size."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import metrics
-from adaptmesh.arrangement import Repair, Repairs, at, find_faces
+from adaptmesh.arrangement.faces import find_faces
+from adaptmesh.arrangement.record import Repair, Repairs, point_text
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import labelled, rows_of_each
 from adaptmesh.errors import DomainError
@@ -17,43 +18,43 @@ from adaptmesh.geometry.distance import distance
 from adaptmesh.topology import regions_beside, used_points
 from adaptmesh.types import Floats, Int64s
 
-from .decimate import Decimated, decimate, turned
-from .small_islands import small_loops
+from .decimate import Decimated, decimate, orient
+from .small_islands import find_small_loops
 
 SHARE = 0.1
-"""How far a boundary may be moved, in units of the size asked for there."""
+"""Default bound on the displacement of a boundary, relative to the requested size there."""
 
 
 class Dropped(Repairs):
-    """What `simplify` left out; printed as a report, and false if that is nothing.
+    """What `simplify` removed: printed as a report, false if there is nothing.
 
     Attributes
     ----------
     records : tuple of Repair
-        Each chain of points left out, and each loop.
+        One record for each sequence of removed points and for each removed loop.
     tolerance : float
-        The bound on the displacement, in units of the size asked for.
+        The bound on the displacement, relative to the requested size.
     displacement : float
         The largest displacement, in units of the coordinates.
     """
 
     def _nothing(self) -> str:
-        return f"nothing to leave out (moving by at most {self.tolerance:.3g} of the size)"
+        return f"nothing removed (displacement bound {self.tolerance:.3g} of the size)"
 
     def _heading(self) -> str:
         return (
-            f"{len(self)} details left out (moving by at most {self.tolerance:.3g} of the size "
-            f"asked for; by {self.displacement:.3g} at most)"
+            f"{len(self)} details removed (displacement bound {self.tolerance:.3g} of the size, "
+            f"largest displacement {self.displacement:.3g})"
         )
 
 
 def simplify(
     domain: Domain, metric: Any, *, share: float = SHARE, loops_below: float = 0.0
 ) -> tuple[Domain, Dropped]:
-    """Leave out detail of a domain far below the size that a metric asks for.
+    """Remove detail of a domain far below the size that a metric requests.
 
-    Every corner of a domain becomes a vertex of its meshes, so that corners nearer to each other
-    than the size asked for force triangles that are smaller than wanted.
+    Every corner of a domain becomes a vertex of its meshes, so that corners closer to each other
+    than the requested size force triangles smaller than requested.
 
     Parameters
     ----------
@@ -61,33 +62,34 @@ def simplify(
     metric : number, callable, or control space
         As for `generate`.
     share : float
-        The bound on the displacement: no point of the old boundary is farther from the new one, nor
-        of the new one from the old one, than this many times the size asked for there, in the
-        direction of the displacement.
+        The bound on the displacement: every point of the old boundary is within this many times
+        the requested size, in the direction of the displacement, of the new boundary, and vice
+        versa.
     loops_below : float
-        Islands, holes and other closed loops that touch no other line are left out if they, with
-        all that is in them, are smaller than this in the metric. The default keeps all; a loop is
-        never left out if it is the last of a named region.
+        Islands, holes and other closed loops that touch no other line are removed, with everything
+        inside, if they are smaller than this in the metric. The default keeps all; the last loop of
+        a named region is always kept.
 
     Returns
     -------
     domain : Domain
-        With the same regions and names. Points at ends of edges shorter than the size are left
-        out, except where lines meet or end, or a name changes; borders stay shared; no line crosses
-        or touches another one, or changes sides with any point, by exact signs.
+        With the same regions and names. Points at ends of edges shorter than the size are removed,
+        except where lines meet or end, or a name changes; neighbours keep their common borders; by
+        exact signs no line crosses or touches another one, or moves across a point.
     dropped : Dropped
-        A record of each chain of points left out, and of each loop.
+        A record of each sequence of removed points and of each removed loop.
 
     Raises
     ------
     DomainError
-        If the domain has curves; their points do not force small triangles, only their corners do.
+        If the domain has curves. (Only their corners force small triangles, not their points.)
     MetricError
         If the metric is not valid at a point of the domain.
 
     Examples
     --------
-    The points beside a small tip go. The tip itself stays: its sides are then longer than the size.
+    The points beside a small tip are removed. The tip stays: its sides are then longer than the
+    size.
 
     >>> from adaptmesh import Domain, simplify
     >>> ring = [(0, 0), (1, 0), (1, 1), (0.501, 1), (0.5, 1.001), (0.499, 1), (0, 1)]
@@ -96,20 +98,20 @@ def simplify(
     (5, 1.0005)
     """
     if not isinstance(domain, Domain):
-        raise DomainError(f"a Domain is wanted, not {type(domain).__name__}: see adaptmesh.repair")
+        raise DomainError(f"expected a Domain, got {type(domain).__name__}: see adaptmesh.repair")
     _refuse_curves(domain)
     for name, value in (("share", share), ("loops_below", loops_below)):
         if not 0 <= value < np.inf:
-            raise ValueError(f"{name}={value!r}: a number of sizes is wanted, from 0")
+            raise ValueError(f"{name}: expected a finite number of at least 0, got {value!r}")
     lines = _Lines.of(domain)
     tensors = metrics.as_control_space(metric)(domain.points)
     log: list[Repair] = []
     lone = np.setdiff1d(np.arange(len(domain.points)), lines.edges)
     if loops_below:
-        lines, lone = _without_loops(domain, lines, lone, tensors, loops_below, log)
+        lines, lone = _drop_loops(domain, lines, lone, tensors, loops_below, log)
     result = decimate(domain.points, tensors, lines.edges, lines.kind, share)
     displacement = _record(domain.points, result, log)
-    simple = _rebuilt(domain, lines, result, lone) if log else domain
+    simple = _rebuild(domain, lines, result, lone) if log else domain
     return simple, Dropped(tuple(log), share, displacement)
 
 
@@ -117,17 +119,17 @@ def _refuse_curves(domain: Domain) -> None:
     if domain.curved.paths:
         curved = int(np.flatnonzero(domain.curved.segment_paths >= 0)[0])
         raise DomainError(
-            f"the domain has curves, one of them through "
-            f"{at(*domain.points[domain.segments[curved, 0]])}, and simplify is for straight "
-            "segments: leave small curves out before the domain is made"
+            f"expected straight segments, got a curve through "
+            f"{point_text(*domain.points[domain.segments[curved, 0]])}: remove small curves before "
+            "making the domain"
         )
 
 
 @dataclass(frozen=True)
 class _Lines:
-    """The pieces of a domain, with their names and sides.
+    """The edges of a domain with their names and the regions beside them.
 
-    Directed so that the region on the left is not above that on the right.
+    Directed so that the region number on the left is not larger than on the right.
     """
 
     edges: Int64s
@@ -140,12 +142,12 @@ class _Lines:
         n = len(domain.points)
         beside = regions_beside(domain.triangles, domain.triangle_regions, domain.pieces, n)
         sides = np.maximum(beside.astype(np.int64), -1)  # -1 is the outside
-        edges, left, right = turned(domain.pieces.astype(np.int64), *sides.T)
+        edges, left, right = orient(domain.pieces.astype(np.int64), *sides.T)
         return cls(edges, domain.segment_tags[domain.piece_segments].astype(np.int64), left, right)
 
     @property
     def kind(self) -> Int64s:
-        """Edges of one kind have the same name and the same sides."""
+        """Kind of each edge: those of one kind have the same name and the same regions beside."""
         rows = np.stack([self.tags, self.left, self.right], axis=1)
         return np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1)
 
@@ -153,61 +155,61 @@ class _Lines:
         return _Lines(self.edges[kept], self.tags[kept], self.left[kept], self.right[kept])
 
 
-def _without_loops(
+def _drop_loops(
     domain: Domain, lines: _Lines, lone: Int64s, tensors: Floats, below: float, log: list[Repair]
 ) -> tuple[_Lines, Int64s]:
-    """The lines without small loops, the points that stay, and a record of each loop."""
+    """Remove small loops: return the lines and lone points that stay, and record each loop."""
     used, edges = used_points(lines.edges)
     faces = find_faces(domain.points[used], edges)
-    loops = small_loops(domain.points[used], tensors[used], edges, faces, below)
+    loops = find_small_loops(domain.points[used], tensors[used], edges, faces, below)
     kept = np.ones(len(edges), bool)
-    gone = np.zeros(faces.count, bool)
+    is_removed = np.zeros(faces.count, bool)
     for loop in loops:
-        staying = kept.copy()
-        staying[loop.edges] = False
+        remaining = kept.copy()
+        remaining[loop.edges] = False
         before, after = (
-            np.union1d(lines.left[which], lines.right[which]) for which in (kept, staying)
+            np.union1d(lines.left[which], lines.right[which]) for which in (kept, remaining)
         )
-        if len(before) > len(after) or not staying.any():
-            continue  # the last of a region, or of all
-        kept = staying
-        gone[loop.faces] = True
+        if len(before) > len(after) or not remaining.any():
+            continue  # the last loop of a region, or the last edges
+        kept = remaining
+        is_removed[loop.faces] = True
         x, y = loop.place
-        what = f"a loop of {len(loop.edges)} edges around an area of {loop.area:.4g} left out"
+        what = f"a loop of {len(loop.edges)} edges around an area of {loop.area:.4g} removed"
         log.append(Repair("loop", (x, y), what, loop.size))
-    stays = [not gone[faces.at(domain.points[v])] for v in lone]
+    stays = [not is_removed[faces.locate(domain.points[v])] for v in lone]
     for v in lone[~np.array(stays, bool)].tolist():
         x, y = domain.points[v].tolist()
-        log.append(Repair("point", (x, y), f"point {v} lies in a loop left out"))
+        log.append(Repair("point", (x, y), f"point {v} lies in a removed loop"))
     return lines.where(kept), lone[np.array(stays, bool)]
 
 
 def _record(points: Floats, result: Decimated, log: list[Repair]) -> float:
-    """A record of each chain of points left out; returns the largest displacement."""
+    """Record each sequence of removed points; return the largest displacement."""
     counts = np.diff(result.starts)
     edge = np.repeat(np.arange(len(counts)), counts)
     start, end = points[result.edges[edge].T]
-    off = distance(points[result.passed], start, end)[0]
-    order = np.lexsort((off, edge))  # of each edge, the farthest point comes last
+    off = distance(points[result.removed], start, end)[0]
+    order = np.lexsort((off, edge))  # the farthest point of each edge comes last
     passing = np.flatnonzero(counts)
     farthest = order[result.starts[passing + 1] - 1]
     for (a, b), n, v, d in zip(
         points[result.edges[passing]].tolist(),
         counts[passing].tolist(),
-        points[result.passed[farthest]].tolist(),
+        points[result.removed[farthest]].tolist(),
         off[farthest].tolist(),
         strict=True,
     ):
         what = (
-            f"{n} point{'s' if n > 1 else ''} between {at(*a)} and {at(*b)} left out, {d:.3g} off "
-            "the line"
+            f"{n} point{'s' if n > 1 else ''} between {point_text(*a)} and {point_text(*b)} "
+            f"removed, {d:.3g} off the line"
         )
         log.append(Repair("points", (v[0], v[1]), what, d))
     return float(off.max(initial=0.0))
 
 
-def _rebuilt(domain: Domain, lines: _Lines, result: Decimated, lone: Int64s) -> Domain:
-    """The domain of the edges that are left, with the regions and names of before."""
+def _rebuild(domain: Domain, lines: _Lines, result: Decimated, lone: Int64s) -> Domain:
+    """Make a domain of the remaining edges, with the old regions and names."""
     used, edges = used_points(result.edges)
     faces = find_faces(domain.points[used], edges)
     region = np.full(faces.count, -1)
@@ -215,8 +217,8 @@ def _rebuilt(domain: Domain, lines: _Lines, result: Decimated, lone: Int64s) -> 
     region[faces.left], region[faces.right] = left, right
     tags = lines.tags[result.source]
     kept = np.union1d(used, lone)
-    # Face 0, the outside, needs no point.
-    places = {r: faces.places[mine + 1] for r, mine in rows_of_each(region[1:]).items()}
+    # Face 0, the outside, needs no seed.
+    places = {r: faces.inner_points[mine + 1] for r, mine in rows_of_each(region[1:]).items()}
     return Domain(
         domain.points[kept],
         np.searchsorted(kept, result.edges),

@@ -1,4 +1,4 @@
-"""Closed loops of edges that touch no other line, and what is in them."""
+"""Closed loops of edges that touch no other line: small islands and holes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from adaptmesh.arrangement import Faces
+from adaptmesh.arrangement.faces import Faces
 from adaptmesh.arrangement.winding import walk
 from adaptmesh.topology import components
 from adaptmesh.types import Floats, Int64s
@@ -15,16 +15,16 @@ from adaptmesh.types import Floats, Int64s
 
 @dataclass(frozen=True)
 class Loop:
-    """Connected edges, with all edges and faces within them.
+    """Connected edges, with all edges and faces inside them.
 
     Attributes
     ----------
     edges, faces : arrays
-        Their numbers.
+        Indices of the edges and faces.
     place : (float, float)
-        A point of it.
+        The mean of its points.
     area, size : float
-        The area of the faces, and the diagonal of the box around it.
+        The total area of the faces, and the diagonal of the bounding box.
     """
 
     edges: Int64s
@@ -34,10 +34,10 @@ class Loop:
     size: float
 
 
-def small_loops(
+def find_small_loops(
     points: Floats, tensors: Floats, edges: Int64s, faces: Faces, below: float
 ) -> Iterator[Loop]:
-    """The outermost loops that are smaller than a length in the metric.
+    """Find the outermost loops that are smaller than a length in the metric.
 
     The size of a loop is twice the largest distance of its points from their mean, in the metric at
     each point.
@@ -48,9 +48,9 @@ def small_loops(
     parent_face = np.zeros(faces.count, np.int64)
     parent_face[order] = before
     entered = np.full(faces.count, -1)
-    entered[order] = of_edge[through]  # the component that each face is within
+    entered[order] = of_edge[through]  # the component that each face is inside of
 
-    # The first face that is reached through a component is reached from the face around it.
+    # The first face reached through a component is entered from the component around it.
     around: dict[int, int] = {}
     for face in order.tolist():
         around.setdefault(int(entered[face]), int(entered[parent_face[face]]))

@@ -27,7 +27,7 @@ from pathlib import Path
 
 import numpy as np
 
-from adaptmesh.arrangement import find_faces
+from adaptmesh.arrangement.faces import find_faces
 from adaptmesh.checks import LARGEST
 from adaptmesh.curves import Bezier, Curve, Line
 from adaptmesh.domain.domain import Domain
@@ -194,8 +194,9 @@ class _Geometry:
             taken[face], region[face] = True, reference
         left_out = ~taken
         left_out[0] = False
-        return faces.places[left_out], {
-            r: faces.places[taken & (region == r)] for r in np.unique(region[region != 0]).tolist()
+        return faces.inner_points[left_out], {
+            r: faces.inner_points[taken & (region == r)]
+            for r in np.unique(region[region != 0]).tolist()
         }
 
 

@@ -212,7 +212,7 @@ def test_bad_metrics_are_named(square, metric, message):
 
 
 def test_what_is_no_domain():
-    with pytest.raises(am.DomainError, match="a Domain is wanted, not list"):
+    with pytest.raises(am.DomainError, match="expected a Domain, got list"):
         am.generate([(0, 0), (1, 0), (0, 1)], 0.1)
 
 

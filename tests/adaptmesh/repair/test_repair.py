@@ -240,7 +240,7 @@ def test_nonsense(dirty):
 
 @pytest.mark.parametrize("tolerance", [-1.0, np.nan, np.inf])
 def test_tolerances_that_make_no_sense(tolerance):
-    with pytest.raises(ValueError, match="a length is wanted"):
+    with pytest.raises(ValueError, match="expected a finite length"):
         am.repair(box(0, 0, 1, 1), tolerance)
 
 
@@ -326,7 +326,7 @@ def test_of_two_names_on_one_line_the_first_is_kept_and_both_are_reported():
     outline = am.Outline(SQUARE, [*RING, (1, 0)], names={"inlet": [0], "wall": [4]})
     domain, repairs = am.repair(outline)
     assert (domain.segment_tags == domain.names["inlet"]).sum() == 1
-    assert "named 'inlet' and not 'wall'" in repairs[0].what
+    assert "with the name 'inlet' instead of 'wall'" in repairs[0].what
     assert repairs.counts["name lost"] == 1
 
 
@@ -386,7 +386,7 @@ def test_curves_are_left_alone():
     domain, repairs = am.repair(curved)
     assert domain is curved
     assert not repairs
-    with pytest.raises(am.DomainError, match=r"has curves, one of them through \(1, "):
+    with pytest.raises(am.DomainError, match=r"expected straight segments, got a curve through \(1, "):
         am.simplify(curved, 0.1)
 
 
@@ -395,7 +395,7 @@ def test_curves_are_left_alone():
 
 def test_too_many_crossings_are_refused_by_place():
     ring = np.random.default_rng(0).uniform(0, 1, (4000, 2))
-    with pytest.raises(am.DomainError, match=r"more than 1,000,000 places, one of them \(0\.\d"):
+    with pytest.raises(am.DomainError, match=r"more than 1,000,000 points, one of them \(0\.\d"):
         am.repair(ring)
 
 
@@ -409,7 +409,7 @@ def test_the_report_shows_a_few_of_each_kind():
     text = str(repairs)
     assert f"crossing: {repairs.counts['crossing']}" in text
     assert f"... and {repairs.counts['crossing'] - 5} more" in text
-    assert text.count("cross; a point put there") == 5
+    assert text.count("cross; a point added there") == 5
     x, y = repairs[0].place
     assert f"at ({x:.10g}, {y:.10g})" in text
     assert len(repairs[:3]) == 3

@@ -62,7 +62,7 @@ def test_what_is_coarser_than_the_size_stays_and_nothing_is_built_anew():
     simple, dropped = am.simplify(domain, 0.5)
     assert simple is domain
     assert not dropped
-    assert str(dropped).startswith("nothing to leave out")
+    assert str(dropped).startswith("nothing removed")
 
 
 def test_names_regions_interfaces_and_lone_points_are_kept():
@@ -169,12 +169,12 @@ def test_the_same_points_go_as_by_the_slow_way(seed):
     )
     kind = domain.segment_tags[domain.piece_segments]
     fast = decimate(domain.points, tensors, edges, kind, 0.3)
-    passed = np.split(fast.passed, fast.starts[1:-1])
+    removed = np.split(fast.removed, fast.starts[1:-1])
     assert [
         (*ends, e, sorted(p.tolist()))
-        for ends, e, p in zip(fast.edges.tolist(), fast.source.tolist(), passed, strict=True)
+        for ends, e, p in zip(fast.edges.tolist(), fast.source.tolist(), removed, strict=True)
     ] == slowly(domain.points, tensors, edges, kind, 0.3)
-    assert 10 < len(fast.passed) < len(domain.points)
+    assert 10 < len(fast.removed) < len(domain.points)
 
 
 def test_a_straight_line_of_many_points():
@@ -188,11 +188,11 @@ def test_a_straight_line_of_many_points():
 
 def test_bad_arguments():
     domain = am.Domain.rectangle(0, 0, 1, 1)
-    with pytest.raises(ValueError, match="share=-1"):
+    with pytest.raises(ValueError, match="share: .* got -1"):
         am.simplify(domain, 1.0, share=-1)
-    with pytest.raises(ValueError, match="loops_below=nan"):
+    with pytest.raises(ValueError, match="loops_below: .* got nan"):
         am.simplify(domain, 1.0, loops_below=np.nan)
-    with pytest.raises(am.DomainError, match=r"not list.*repair"):
+    with pytest.raises(am.DomainError, match=r"got list.*repair"):
         am.simplify([(0, 0), (1, 0), (1, 1)], 1.0)
     with pytest.raises(am.MetricError):
         am.simplify(domain, lambda x: np.full(len(x), np.nan))

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh.arrangement import first_of_equal
 from adaptmesh.curves import Curve, EllipticArc, Polyline
 from adaptmesh.domain.coincident_curves import curves_once
 from adaptmesh.domain.domain import Domain
@@ -19,6 +18,7 @@ from adaptmesh.domain.inscribed_polygon import extent_of
 from adaptmesh.domain.outline import Outline
 from adaptmesh.domain.surfaces import joined_lines, seeds_of
 from adaptmesh.errors import DomainError
+from adaptmesh.geometry.distance import first_of_equal
 
 _SAMPLES = np.linspace(0, 1, 33)  # on each curve around a filled area
 

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from adaptmesh.arrangement import first_of_equal
 from adaptmesh.curves import Curve
 from adaptmesh.domain.coincident_curves import curves_once
 from adaptmesh.domain.domain import Domain
@@ -18,6 +17,7 @@ from adaptmesh.domain.inscribed_polygon import extent_of
 from adaptmesh.domain.outline import Outline
 from adaptmesh.domain.surfaces import overlaps, seeds_of
 from adaptmesh.errors import DomainError
+from adaptmesh.geometry.distance import first_of_equal
 from adaptmesh.io.domains.drawings.drawing import JOINED
 from adaptmesh.types import Floats
 
