@@ -48,5 +48,8 @@ def test_example_runs_and_gives_what_it_says(name, tmp_path, monkeypatch):
 
 
 def test_examples_are_found():
-    assert {"adaptmesh.validate.validate", "adaptmesh.domain.Domain.from_curves"} <= EXAMPLES.keys()
+    assert {
+        "adaptmesh.quality.explain.explain",
+        "adaptmesh.domain.domain.Domain.from_curves",
+    } <= set(EXAMPLES)
     assert len(EXAMPLES) >= 18

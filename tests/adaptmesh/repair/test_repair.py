@@ -386,7 +386,9 @@ def test_curves_are_left_alone():
     domain, repairs = am.repair(curved)
     assert domain is curved
     assert not repairs
-    with pytest.raises(am.DomainError, match=r"expected straight segments, got a curve through \(1, "):
+    with pytest.raises(
+        am.DomainError, match=r"expected straight segments, got a curve through \(1, "
+    ):
         am.simplify(curved, 0.1)
 
 

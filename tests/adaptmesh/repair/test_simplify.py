@@ -188,9 +188,9 @@ def test_a_straight_line_of_many_points():
 
 def test_bad_arguments():
     domain = am.Domain.rectangle(0, 0, 1, 1)
-    with pytest.raises(ValueError, match="share: .* got -1"):
+    with pytest.raises(ValueError, match=r"share: .* got -1"):
         am.simplify(domain, 1.0, share=-1)
-    with pytest.raises(ValueError, match="loops_below: .* got nan"):
+    with pytest.raises(ValueError, match=r"loops_below: .* got nan"):
         am.simplify(domain, 1.0, loops_below=np.nan)
     with pytest.raises(am.DomainError, match=r"got list.*repair"):
         am.simplify([(0, 0), (1, 0), (1, 1)], 1.0)
