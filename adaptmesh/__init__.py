@@ -101,3 +101,7 @@ __all__ = [
     "write",
     "write_sol",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__doc__", "__file__", "__name__", "__path__", "__version__"])

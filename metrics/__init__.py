@@ -96,3 +96,7 @@ __all__ = [
     "triangle_metrics",
     "zz_indicators",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__doc__", "__file__", "__name__", "__path__"])

@@ -54,13 +54,13 @@ class Raster(ControlSpace):
         Sizes, with y along the rows and x along the columns. A DataArray brings its coordinates;
         its dimensions are called x and y, lon and lat, longitude and latitude, or easting and
         northing, in either order.
-    extent : (x0, x1, y0, y1), optional
-        The outer borders of the outer cells, as for ``matplotlib.pyplot.imshow``.
+    bounds : (x0, y0, x1, y1), optional
+        The outer borders of the outer cells, left, bottom, right and top, as everywhere here.
     x, y : (columns,) and (rows,) array_like, optional
-        Instead of `extent`, the centres of the cells, rising or falling, evenly spaced or not.
+        Instead of `bounds`, the centres of the cells, rising or falling, evenly spaced or not.
         Falling y have row 0 at the top.
     origin : {"upper", "lower"}, optional
-        With `extent`, and only then, needed: whether row 0 is at the top, as in images and most
+        With `bounds`, and only then, needed: whether row 0 is at the top, as in images and most
         GeoTIFFs, or at the bottom.
     no_data : float or sequence of float, optional
         The numbers that mark cells without a value. NaN and masked cells are always without; a
@@ -86,7 +86,7 @@ class Raster(ControlSpace):
     Examples
     --------
     >>> from metrics import Raster, tensor
-    >>> field = Raster([[1.0, 2.0], [3.0, 4.0]], extent=(0, 2, 0, 2), origin="upper")
+    >>> field = Raster([[1.0, 2.0], [3.0, 4.0]], bounds=(0, 0, 2, 2), origin="upper")
     >>> tensor.sizes(field([[0.5, 1.5], [1.0, 1.0]]))[:, 0]
     array([1. , 2.5])
     """
@@ -94,8 +94,8 @@ class Raster(ControlSpace):
     def __init__(
         self,
         values: ArrayLike | Any,
-        extent: tuple[float, float, float, float] | None = None,
         *,
+        bounds: tuple[float, float, float, float] | None = None,
         x: ArrayLike | None = None,
         y: ArrayLike | None = None,
         origin: Literal["upper", "lower"] | None = None,
@@ -107,20 +107,20 @@ class Raster(ControlSpace):
         self.interpolation = chosen("interpolation", interpolation, ("linear", "nearest"))
         self.outside = chosen("outside", outside, ("clamp", "error"))
         if hasattr(values, "dims") and hasattr(values, "coords"):
-            if extent is not None or x is not None or y is not None:
-                raise MetricError("a DataArray has coordinates: give neither extent nor x and y")
+            if bounds is not None or x is not None or y is not None:
+                raise MetricError("a DataArray has coordinates: give neither bounds nor x and y")
             values, x, y, markers = _of_data_array(values)
             no_data = markers if no_data is None else no_data
         given = sizes = _as_sizes(values, no_data)
-        columns, rows = _centres(sizes, extent, x, y, origin)
+        columns, rows = _centres(sizes, bounds, x, y, origin)
         if columns[0] > columns[-1]:
             columns, sizes = columns[::-1], sizes[:, ::-1]
         if rows[0] > rows[-1]:
             rows, sizes = rows[::-1], sizes[::-1]
         #: Centres, rising, and the sizes there with row 0 at the bottom; NaN where there is none.
         self.x, self.y = np.ascontiguousarray(columns), np.ascontiguousarray(rows)
-        self._x_edges = _edges(self.x, None if extent is None else extent[:2])
-        self._y_edges = _edges(self.y, None if extent is None else extent[2:])
+        self._x_edges = _edges(self.x, None if bounds is None else bounds[::2])
+        self._y_edges = _edges(self.y, None if bounds is None else bounds[1::2])
         _refuse_fill_values(given, max(np.ptp(self._x_edges), np.ptp(self._y_edges)))
         self.sizes = _filled(np.ascontiguousarray(sizes), self.x, self.y, fill)
 
@@ -171,7 +171,9 @@ class Raster(ControlSpace):
         ends_y = sorted([affine.f, affine.f + affine.e * rows])
         upright = values[:, ::-1] if affine.a < 0 else values
         origin: Literal["upper", "lower"] = "upper" if affine.e < 0 else "lower"
-        return cls(upright, (*ends_x, *ends_y), origin=origin, **options)
+        return cls(
+            upright, bounds=(ends_x[0], ends_y[0], ends_x[1], ends_y[1]), origin=origin, **options
+        )
 
     def values(self, points: Floats) -> Floats:
         if self.outside == "error":
@@ -313,31 +315,31 @@ def _refuse_fill_values(sizes: Floats, side: float) -> None:
 
 
 def _centres(
-    sizes: Floats, extent: Any, x: Any, y: Any, origin: str | None
+    sizes: Floats, bounds: Any, x: Any, y: Any, origin: str | None
 ) -> tuple[Floats, Floats]:
     """The centres of columns and rows, in the order of the array."""
     rows, columns = sizes.shape
-    if extent is not None:
+    if bounds is not None:
         if x is not None or y is not None:
-            raise MetricError("give either extent or x and y, not both")
+            raise MetricError("give either bounds or x and y, not both")
         if origin is None:
             raise MetricError(
                 'give origin="upper" if row 0 of the raster is at the top, as in images, or '
                 'origin="lower" if it is at the bottom'
             )
         chosen("origin", origin, ("upper", "lower"))
-        if len(extent) != 4:
-            raise MetricError(f"extent must be (x0, x1, y0, y1), not {extent!r}")
-        x0, x1, y0, y1 = (number("extent", value) for value in extent)
+        if len(bounds) != 4:
+            raise MetricError(f"bounds must be (x0, y0, x1, y1), not {bounds!r}")
+        x0, y0, x1, y1 = (number("bounds", value) for value in bounds)
         if not (x0 < x1 and y0 < y1):
-            raise MetricError(f"extent must be (x0, x1, y0, y1) with x0 < x1 and y0 < y1: {extent}")
+            raise MetricError(f"bounds must be (x0, y0, x1, y1) with x0 < x1 and y0 < y1: {bounds}")
         across = x0 + (x1 - x0) * (np.arange(columns) + 0.5) / columns
         upwards = y0 + (y1 - y0) * (np.arange(rows) + 0.5) / rows
         return across, upwards[::-1] if origin == "upper" else upwards
     if x is None or y is None:
-        raise MetricError("give the place of the raster: extent=(x0, x1, y0, y1), or x and y")
+        raise MetricError("give the place of the raster: bounds=(x0, y0, x1, y1), or x and y")
     if origin is not None:
-        raise MetricError("origin goes with extent; with x and y, their order tells it")
+        raise MetricError("origin goes with bounds; with x and y, their order tells it")
     return _coordinates("x", x, columns, "columns"), _coordinates("y", y, rows, "rows")
 
 
@@ -348,7 +350,7 @@ def _coordinates(name: str, values: Any, count: int, of: str) -> Floats:
             f"{name} must have the shape ({count},), one for each of the {of}, not {out.shape}"
         )
     if count < 2:
-        raise MetricError(f"a single {name} has no width: give extent instead")
+        raise MetricError(f"a single {name} has no width: give bounds instead")
     steps = np.diff(out)
     if not np.isfinite(out).all() or not ((steps > 0).all() or (steps < 0).all()):
         i = int(np.argmin(steps * np.sign(steps[0]) > 0)) + 1

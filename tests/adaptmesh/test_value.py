@@ -237,3 +237,9 @@ def test_mappings_are_read_only():
     with pytest.raises(TypeError):
         mapping["a"] = 2
     assert pickle.loads(pickle.dumps(mapping)) == mapping
+
+
+def test_dir_shows_what_is_public():
+    for package in (am, metrics):
+        assert set(package.__all__) == {name for name in dir(package) if not name.startswith("_")}
+        assert all(hasattr(package, name) for name in dir(package))

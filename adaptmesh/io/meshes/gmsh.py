@@ -28,9 +28,7 @@ from __future__ import annotations
 import json
 import re
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
@@ -39,87 +37,18 @@ from adaptmesh.files.bounded import Allowance, read_json, whole_number
 from adaptmesh.files.located import located
 from adaptmesh.files.records import BinaryCursor, Cursor, TextCursor, table
 from adaptmesh.files.whole import text_of
-from adaptmesh.mesh.incoming import Content, refuse_cells
+from adaptmesh.mesh.incoming import Content
 from adaptmesh.mesh.periodic_sides import checked_rows
 from adaptmesh.types import Array
 
+from . import gmsh22, gmsh40, gmsh41, gmsh_old
 from .gmsh_groups import in_several, name_several
+from .gmsh_sections import DIMENSION_OF_TYPE, Elements, Sections, section
 from .spatial import plane_fields, shaped, shapes, spatial, spatial_tensor, take_metric
 
-NODES_OF_TYPE = {
-    15: 1, 1: 2, 8: 3, 26: 4, 27: 5, 28: 6,
-    2: 3, 9: 6, 20: 9, 21: 10, 22: 12, 23: 15, 24: 15, 25: 21,
-}  # fmt: skip
-"""Nodes of the element types that are read: lone vertices, edges and triangles of any order."""
-DIMENSION_OF_TYPE = {
-    kind: 0 if kind == 15 else 1 if kind in (1, 8, 26, 27, 28) else 2 for kind in NODES_OF_TYPE
-}
-_KINDS = {
-    3: "quadrilaterals", 4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids",
-    10: "quadrilaterals with 9 nodes",
-    11: "tetrahedra of second order", 16: "quadrilaterals with 8 nodes",
-}  # fmt: skip
 _VERSIONS_4_0 = ("4", "4.0")
 _VERSIONS = ("2", "2.0", "2.1", "2.2", "3", "3.0", "3.1", *_VERSIONS_4_0, "4.1")
 _LONGEST_NAME = 127
-
-
-@dataclass
-class Elements:
-    """Elements of one type: tag, vertices by node tag, and physical group of each.
-
-    Below 0 stand several groups, see `Sections.shared`.
-    """
-
-    tags: Array
-    nodes: Array
-    physical: Array
-
-
-@dataclass
-class Sections:
-    """What the sections of a `.msh` file say, before they are brought together."""
-
-    allowance: Allowance
-    node_tags: Array = field(default_factory=lambda: np.empty(0, np.int64))
-    points: Array = field(default_factory=lambda: np.empty((0, 3)))
-    elements: dict[int, Elements] = field(default_factory=dict)
-    names: dict[int, dict[str, int]] = field(default_factory=dict)
-    groups: dict[tuple[int, int], list[int]] = field(default_factory=dict)
-    node_data: dict[str, tuple[Array, Array]] = field(default_factory=dict)
-    element_data: dict[str, tuple[Array, Array]] = field(default_factory=dict)
-    ours: dict[str, Any] = field(default_factory=dict)
-    several: dict[tuple[int, tuple[int, ...]], int] = field(default_factory=dict)
-
-    def group_of(self, dim: int, entity: int) -> int:
-        """The physical group of an entity, see `shared`."""
-        return self.shared(dim, self.groups.get((dim, entity), []))
-
-    def shared(self, dim: int, groups: Iterable[int]) -> int:
-        """One number for groups: 0 for none, that of a single one, else one below 0."""
-        key = tuple(sorted(set(groups)))
-        if len(key) < 2:
-            return key[0] if key else 0
-        return self.several.setdefault((dim, key), -1 - len(self.several))
-
-    def add(self, kind: int, parts: list[Elements]) -> None:
-        """Bring the blocks of one type of element together."""
-        self.elements[kind] = Elements(
-            np.concatenate([p.tags for p in parts]),
-            np.concatenate([p.nodes for p in parts]),
-            np.concatenate([p.physical for p in parts]),
-        )
-
-
-def refuse_element_types(counts: dict[int, int]) -> None:
-    """Raise for element types that are not read; `counts` by Gmsh's number of the type."""
-    refuse_cells(
-        {
-            _KINDS.get(t, f"elements of Gmsh type {t}"): n
-            for t, n in counts.items()
-            if t not in NODES_OF_TYPE
-        }
-    )
 
 
 # ---------------------------------------------------------------------------------------- reading
@@ -176,8 +105,6 @@ def _sections(data: bytes) -> Iterator[tuple[str, bytes]]:
 
 def _readers(version: str) -> Mapping[str, Callable[[Cursor, Sections], None]]:
     """The readers of the sections of a version, by name."""
-    from . import gmsh22, gmsh40, gmsh41, gmsh_old
-
     by_version = {"1": gmsh_old.READERS_1, "3": gmsh_old.READERS_3, "4": gmsh41.READERS}
     return (
         gmsh40.READERS if version in _VERSIONS_4_0 else by_version.get(version[0], gmsh22.READERS)
@@ -357,8 +284,6 @@ def _field(name: str, view: tuple[Array, Array], tags: Array, plane: object) -> 
 
 def encode(content: Content, *, version: str = "4.1", binary: bool = True) -> bytes:
     """The bytes of a `.msh` file."""
-    from . import gmsh22, gmsh41
-
     writers = {"4.1": gmsh41.body, "2.2": gmsh22.body}
     if version not in writers:
         raise FormatError(f"there is no version {version!r} to write; choose '4.1' or '2.2'")
@@ -380,12 +305,6 @@ def encode(content: Content, *, version: str = "4.1", binary: bool = True) -> by
     for name, values in content.triangle_fields.items():
         parts.append(section("ElementData", _view(name, values, triangles, binary), binary))
     return b"".join(parts)
-
-
-def section(name: str, body: bytes, binary: bool = False) -> bytes:
-    """A section with its first and last line; after bytes a line break comes before ``$End``."""
-    newline = b"\n" if binary else b""
-    return b"$%b\n%b%b$End%b\n" % (name.encode(), body, newline, name.encode())
 
 
 def _one(binary: bool) -> bytes:

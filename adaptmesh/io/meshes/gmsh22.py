@@ -19,7 +19,7 @@ from adaptmesh.files.records import BinaryCursor, Cursor, TextCursor, one, table
 from adaptmesh.mesh.incoming import Content
 from adaptmesh.types import Array
 
-from .gmsh import NODES_OF_TYPE, Elements, Sections, refuse_element_types, section
+from .gmsh_sections import NODES_OF_TYPE, Elements, Sections, refuse_element_types, section
 
 _MOST_TAGS = 1000
 

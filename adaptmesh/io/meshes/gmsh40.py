@@ -18,7 +18,7 @@ import numpy as np
 from adaptmesh.errors import FormatError
 from adaptmesh.files.records import Cursor, one
 
-from .gmsh import NODES_OF_TYPE, Elements, Sections, refuse_element_types
+from .gmsh_sections import NODES_OF_TYPE, Elements, Sections, refuse_element_types
 
 
 def _read_entities(cursor: Cursor, out: Sections) -> None:

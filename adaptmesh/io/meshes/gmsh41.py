@@ -22,7 +22,7 @@ from adaptmesh.files.records import Cursor, one, table
 from adaptmesh.mesh.incoming import Content
 from adaptmesh.types import Array
 
-from .gmsh import NODES_OF_TYPE, Elements, Sections, refuse_element_types, section
+from .gmsh_sections import NODES_OF_TYPE, Elements, Sections, refuse_element_types, section
 
 # ---------------------------------------------------------------------------------------- reading
 

@@ -6,15 +6,13 @@ Version 4 lists the groups of an entity, version 2 the element once for each of 
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from adaptmesh.errors import FormatWarning
 from adaptmesh.types import Array
 
-if TYPE_CHECKING:
-    from .gmsh import Elements, Sections
+from .gmsh_sections import Elements, Sections
 
 _KINDS = {1: "edges", 2: "triangles"}
 

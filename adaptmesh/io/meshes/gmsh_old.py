@@ -20,7 +20,13 @@ from adaptmesh.errors import FormatError
 from adaptmesh.files.records import BinaryCursor, Cursor, TextCursor, one
 from adaptmesh.types import Array
 
-from .gmsh import DIMENSION_OF_TYPE, NODES_OF_TYPE, Elements, Sections, refuse_element_types
+from .gmsh_sections import (
+    DIMENSION_OF_TYPE,
+    NODES_OF_TYPE,
+    Elements,
+    Sections,
+    refuse_element_types,
+)
 
 
 def _text(cursor: Cursor) -> TextCursor:

@@ -14,7 +14,7 @@ from metrics import MetricError, Raster, tensor
 
 #: Rows from the top, as on paper.
 TABLE = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
-EXTENT = (10, 13, 0, 2)
+BOUNDS = (10, 0, 13, 2)
 
 
 def sizes(field, points):
@@ -23,8 +23,8 @@ def sizes(field, points):
 
 def test_row_0_is_where_it_is_said_to_be():
     corners = [[10.5, 1.5], [12.5, 1.5], [10.5, 0.5], [12.5, 0.5]]
-    upper = Raster(TABLE, EXTENT, origin="upper")
-    lower = Raster(TABLE[::-1], EXTENT, origin="lower")
+    upper = Raster(TABLE, bounds=BOUNDS, origin="upper")
+    lower = Raster(TABLE[::-1], bounds=BOUNDS, origin="lower")
     falling = Raster(TABLE, x=[10.5, 11.5, 12.5], y=[1.5, 0.5])
     rising = Raster(TABLE[::-1], x=[10.5, 11.5, 12.5], y=[0.5, 1.5])
     mirrored = Raster(TABLE[:, ::-1], x=[12.5, 11.5, 10.5], y=[1.5, 0.5])
@@ -34,9 +34,9 @@ def test_row_0_is_where_it_is_said_to_be():
 
 def test_linear_and_nearest():
     points = [[11.0, 1.5], [11.5, 1.0], [11.4, 0.9], [10.0, 2.0], [12.9, 0.1]]
-    linear = Raster(TABLE, EXTENT, origin="upper")
+    linear = Raster(TABLE, bounds=BOUNDS, origin="upper")
     np.testing.assert_allclose(sizes(linear, points), [1.5, 3.5, 3.7, 1, 6])
-    nearest = Raster(TABLE, EXTENT, origin="upper", interpolation="nearest")
+    nearest = Raster(TABLE, bounds=BOUNDS, origin="upper", interpolation="nearest")
     np.testing.assert_allclose(sizes(nearest, points[2:]), [5, 1, 6])
 
 
@@ -55,9 +55,9 @@ def test_bilinear_as_by_scipy(values, seed):
 
 
 def test_outside():
-    field = Raster(TABLE, EXTENT, origin="upper")
+    field = Raster(TABLE, bounds=BOUNDS, origin="upper")
     np.testing.assert_allclose(sizes(field, [[-5.0, 9.0], [99.0, 0.5]]), [1, 6])
-    strict = Raster(TABLE, EXTENT, origin="upper", outside="error")
+    strict = Raster(TABLE, bounds=BOUNDS, origin="upper", outside="error")
     np.testing.assert_allclose(sizes(strict, [[10.0, 0.0], [13 + 1e-12, 2.0]]), [4, 3])
     with pytest.raises(MetricError, match=r"point 1 \(13.1, 1.0\) is outside .*\[10, 13\] x \[0,"):
         strict([[11.0, 1.0], [13.1, 1.0]])
@@ -67,13 +67,13 @@ def test_no_data():
     table = TABLE.copy()
     table[0, 0] = -9999
     here = [[10.6, 1.5]]
-    field = Raster(table, EXTENT, origin="upper", no_data=-9999)
+    field = Raster(table, bounds=BOUNDS, origin="upper", no_data=-9999)
     with pytest.raises(MetricError, match=r'no data at point 0 \(10.6, 1.5\).*fill="nearest"'):
         field(here)
     np.testing.assert_allclose(sizes(field, [[11.5, 1.5], [10.5, 0.5]]), [2, 4])  # not needed there
-    nearest = Raster(table, EXTENT, origin="upper", no_data=-9999, fill="nearest")
+    nearest = Raster(table, bounds=BOUNDS, origin="upper", no_data=-9999, fill="nearest")
     assert sizes(nearest, here)[0] in (pytest.approx(2), pytest.approx(4 * 0.9 + 0.2))
-    number = Raster(table, EXTENT, origin="upper", no_data=-9999, fill=0.5)
+    number = Raster(table, bounds=BOUNDS, origin="upper", no_data=-9999, fill=0.5)
     np.testing.assert_allclose(sizes(number, here), 0.9 * 0.5 + 0.1 * 2)
 
 
@@ -86,18 +86,20 @@ def test_nan_masked_and_single_precision_are_no_data_too():
         (np.where(TABLE == 1, 255, TABLE).astype(np.uint8), {"no_data": 255.0}),
         (TABLE.astype(np.uint8), {"no_data": 1}),
     ):
-        field = Raster(table, EXTENT, origin="upper", fill=7, **options)
+        field = Raster(table, bounds=BOUNDS, origin="upper", fill=7, **options)
         np.testing.assert_allclose(sizes(field, [[10.5, 1.5], [11.5, 1.5]]), [7, 2])
 
 
 def test_one_row_one_column_one_cell():
     np.testing.assert_allclose(
-        sizes(Raster([[1.0, 3.0]], (0, 2, 0, 1), origin="upper"), [[1, 0.2]]), 2
+        sizes(Raster([[1.0, 3.0]], bounds=(0, 0, 2, 1), origin="upper"), [[1, 0.2]]), 2
     )
     np.testing.assert_allclose(
-        sizes(Raster([[1.0], [3.0]], (0, 1, 0, 2), origin="lower"), [[0.3, 1]]), 2
+        sizes(Raster([[1.0], [3.0]], bounds=(0, 0, 1, 2), origin="lower"), [[0.3, 1]]), 2
     )
-    np.testing.assert_allclose(sizes(Raster([[5]], (0, 1, 0, 1), origin="lower"), [[9, 9]]), 5)
+    np.testing.assert_allclose(
+        sizes(Raster([[5]], bounds=(0, 0, 1, 1), origin="lower"), [[9, 9]]), 5
+    )
 
 
 @pytest.mark.parametrize(
@@ -105,15 +107,15 @@ def test_one_row_one_column_one_cell():
     [
         ({"origin": None}, 'give origin="upper" if row 0'),
         ({"origin": "top"}, "origin must be one of 'upper', 'lower', not 'top'"),
-        ({"extent": None, "origin": None}, r"extent=\(x0, x1, y0, y1\), or x and y"),
-        ({"extent": (0, 1, 2)}, "extent must be"),
-        ({"extent": (0, 1, 5, 2)}, "y0 < y1"),
-        ({"extent": (0, 1, 2, np.nan)}, "extent must be finite"),
+        ({"bounds": None, "origin": None}, r"bounds=\(x0, y0, x1, y1\), or x and y"),
+        ({"bounds": (0, 1, 2)}, "bounds must be"),
+        ({"bounds": (0, 5, 1, 2)}, "y0 < y1"),
+        ({"bounds": (0, 2, 1, np.nan)}, "bounds must be finite"),
         ({"x": [1, 2, 3], "y": [1, 2]}, "not both"),
-        ({"extent": None, "x": [1, 2, 3], "y": [1, 2]}, "origin goes with extent"),
-        ({"extent": None, "origin": None, "x": [1, 2], "y": [1, 2]}, r"x must have the shape \(3,"),
+        ({"bounds": None, "x": [1, 2, 3], "y": [1, 2]}, "origin goes with bounds"),
+        ({"bounds": None, "origin": None, "x": [1, 2], "y": [1, 2]}, r"x must have the shape \(3,"),
         (
-            {"extent": None, "origin": None, "x": [1, 3, 2], "y": [1, 2]},
+            {"bounds": None, "origin": None, "x": [1, 3, 2], "y": [1, 2]},
             r"x\[2\] = 2.0 follows 3.0",
         ),
         ({"interpolation": "cubic"}, "interpolation must be"),
@@ -128,7 +130,7 @@ def test_one_row_one_column_one_cell():
     ],
 )
 def test_refused(arguments, message):
-    good = {"values": TABLE, "extent": EXTENT, "origin": "upper"}
+    good = {"values": TABLE, "bounds": BOUNDS, "origin": "upper"}
     with pytest.raises(MetricError, match=message):
         Raster(**(good | arguments))
 
@@ -151,8 +153,8 @@ def test_a_data_array_brings_its_coordinates_in_either_order():
         np.testing.assert_allclose(sizes(field, [[10.5, 1.5], [11.5, 0.5]]), [1, 50])
     with pytest.raises(MetricError, match=r"dimensions \('band', 'x'\).*longitude"):
         Raster(data_array(TABLE, ("band", "x"), x=x))
-    with pytest.raises(MetricError, match="neither extent"):
-        Raster(data, EXTENT)
+    with pytest.raises(MetricError, match="neither bounds"):
+        Raster(data, bounds=BOUNDS)
 
 
 def test_without_rasterio(monkeypatch, tmp_path):
@@ -267,27 +269,27 @@ def test_fill_values_are_no_sizes(value, scale, dtype):
         pytest.skip("no number of this type")
     table = (np.array(TABLE, dtype=float) * scale).astype(dtype)
     table[1, 2] = value
-    extent = tuple(scale * v for v in EXTENT)
+    bounds = tuple(scale * v for v in BOUNDS)
     with pytest.raises(MetricError, match=r"row 1, column 2 is .*: a fill value.*no_data="):
-        Raster(table, extent, origin="upper", fill="nearest")
-    field = Raster(table, extent, origin="upper", no_data=value, fill="nearest")
+        Raster(table, bounds=bounds, origin="upper", fill="nearest")
+    field = Raster(table, bounds=bounds, origin="upper", no_data=value, fill="nearest")
     assert field.sizes.max() <= np.max(TABLE) * scale * (1 + 1e-6)
-    both = Raster(table, extent, origin="upper", no_data=[-1.0, value], fill=0.5 * scale)
+    both = Raster(table, bounds=bounds, origin="upper", no_data=[-1.0, value], fill=0.5 * scale)
     assert np.count_nonzero(both.sizes == 0.5 * scale) >= 1
     masked = np.ma.masked_values(table, value)
-    assert Raster(masked, extent, origin="upper", fill="nearest").sizes.max() < value
+    assert Raster(masked, bounds=bounds, origin="upper", fill="nearest").sizes.max() < value
 
 
 def test_a_masked_array_that_was_filled_is_refused():
     masked = np.ma.array(TABLE, dtype=float, mask=np.eye(len(TABLE), len(TABLE[0])))
     with pytest.raises(MetricError, match="a fill value and no size"):
-        Raster(masked.filled(), EXTENT, origin="upper")
+        Raster(masked.filled(), bounds=BOUNDS, origin="upper")
 
 
 def test_a_size_as_large_as_the_raster_is_one():
-    Raster([[1e3]], (0, 1, 0, 1), origin="lower")
+    Raster([[1e3]], bounds=(0, 0, 1, 1), origin="lower")
     with pytest.raises(MetricError, match="a fill value"):
-        Raster([[1.1e3]], (0, 1, 0, 1), origin="lower")
+        Raster([[1.1e3]], bounds=(0, 0, 1, 1), origin="lower")
 
 
 @pytest.mark.parametrize("name", ["_FillValue", "missing_value", "nodata"])
@@ -303,7 +305,7 @@ def test_markers_in_attributes(name):
 @pytest.mark.parametrize("bad", ["none", [[1], [2, 3]], {}])
 def test_what_is_no_marker(bad):
     with pytest.raises(MetricError, match="no_data: expected a number"):
-        Raster(TABLE, EXTENT, origin="upper", no_data=bad)
+        Raster(TABLE, bounds=BOUNDS, origin="upper", no_data=bad)
 
 
 @pytest.mark.parametrize("interpolation", ["linear", "nearest"])
