@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh._core import Fault, triangulate
+from adaptmesh._core import InputError, triangulate
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.containing import containing_triangles
 from adaptmesh.topology import components, edge_keys, half_edges
@@ -105,11 +105,11 @@ def find_faces(points: Floats, edges: Int64s) -> Faces:
     none = np.empty((0, 2))
     try:
         triangles, _, pieces, _, _ = triangulate(framed, segments, none, none, False)
-    except Fault as fault:
+    except InputError as fault:
         kind, _, _, x, y = fault.args
         raise DomainError(
-            f"{kind.replace('_', ' ')} remain at {point_text(x, y)} after the repair: features "
-            "there are as small as the rounding of coordinates; choose a larger tolerance"
+            f"{kind.name.replace('_', ' ')} remain at {point_text(x, y)} after the repair: "
+            "features there are as small as the rounding of coordinates; choose a larger tolerance"
         ) from fault
     if len(pieces) != len(segments):
         lost = segments[~np.isin(edge_keys(segments, n + 4), edge_keys(pieces, n + 4))][0, 0]

@@ -7,8 +7,8 @@
 #include <exception>
 #include <optional>
 
-#include "adaptmesh/core/point.hpp"
-#include "adaptmesh/core/triangulation.hpp"
+#include "adaptmesh/core/geometry/point.hpp"
+#include "adaptmesh/core/triangulation/triangulation.hpp"
 
 namespace adaptmesh {
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from adaptmesh._core import Fault, triangulate
+from adaptmesh._core import InputError, triangulate
 from adaptmesh.checks import checked_points, read_only
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats, Ints
@@ -59,7 +59,7 @@ def enclosed(
         triangles, labels, pieces, segment, is_boundary = triangulate(
             points, segments, inside.holes, inside.seeds, inside.nesting, inside.certain
         )
-    except Fault as fault:
+    except InputError as fault:
         raise DomainError(fault_text(domain, *fault.args)) from None
     return with_fields(
         domain,

@@ -2,59 +2,69 @@
 
 from __future__ import annotations
 
+from adaptmesh._core import InputFault as Fault
+
 from .data import DomainData
 from .inputs import OR_REPAIR
 
 
-def fault_text(domain: DomainData, kind: str, i: int, j: int, x: float, y: float) -> str:
+def fault_text(domain: DomainData, kind: Fault, i: int, j: int, x: float, y: float) -> str:
     """What is wrong, where, and what to do, from a fault that the core found."""
     place = f"({x:.17g}, {y:.17g})"
-    if kind in ("crossing_segments", "overlapping_segments", "lines_too_near"):
+    if kind in (
+        Fault.crossing_segments,
+        Fault.overlapping_segments,
+        Fault.lines_too_near,
+    ):
         a, b = segment_text(domain, i), segment_text(domain, j)
-        if kind == "lines_too_near":
+        if kind == Fault.lines_too_near:
             return (
                 f"{a} and {b} come so near each other at {place} that vertices on them cannot be "
                 "told apart (coordinates are rounded): move them apart, make them one, or move the "
                 "origin near them"
             )
-        if kind == "crossing_segments":
+        if kind == Fault.crossing_segments:
             return f"{a} and {b} cross at {place}: put a point there and divide both, {OR_REPAIR}"
         return (
             f"{a} and {b} overlap near {place}: keep one, divided at the points on it, {OR_REPAIR}"
         )
-    segment = {"open_hole": j, "uncertain_hole": j, "degenerate_segment": i}.get(kind)
+    segment = {
+        Fault.open_hole: j,
+        Fault.uncertain_hole: j,
+        Fault.degenerate_segment: i,
+    }.get(kind)
     line = "" if segment is None else line_text(domain, segment)
     messages = {
-        "all_collinear": "all points lie on one line: there is nothing to mesh",
-        "duplicate_points": f"points {i} and {j} are the same, {place}: keep one of them, "
+        Fault.all_collinear: "all points lie on one line: there is nothing to mesh",
+        Fault.duplicate_points: f"points {i} and {j} are the same, {place}: keep one of them, "
         f"{OR_REPAIR}",
-        "open_boundary": "the boundary is not closed: the outside leaks in"
+        Fault.open_boundary: "the boundary is not closed: the outside leaks in"
         + (f" past point {i} {place}, where a boundary ends" if i >= 0 else "")
         + "; close it, or check `holes`; adaptmesh.repair closes gaps below its tolerance",
-        "open_hole": f"{line} is in a hole, where nothing is meshed, near point "
+        Fault.open_hole: f"{line} is in a hole, where nothing is meshed, near point "
         f"{i} {place}: on both sides of it is a hole or the outside; say holes=[] if there are "
         f"no holes, or give a point in each; or remove it there, {OR_REPAIR}",
-        "uncertain_hole": f"whether what {line} ends at, at point {i} {place}, is "
+        Fault.uncertain_hole: f"whether what {line} ends at, at point {i} {place}, is "
         "a hole is uncertain: say holes=[] if it is not, holes='nesting' if it is, or give a point "
         "in each hole",
-        "hole_outside": f"hole {i} at {place} is not inside the domain: move or remove it",
-        "hole_on_segment": f"hole {i} at {place} lies on a segment: move it into the hole",
-        "region_seed_outside": f"the point of {seed_text(domain, i)} at {place} is not inside the "
-        "domain: move or remove it, or check `holes` (holes=[] if there are none)",
-        "region_seed_on_segment": f"the point of {seed_text(domain, i)} at {place} lies on a "
+        Fault.hole_outside: f"hole {i} at {place} is not inside the domain: move or remove it",
+        Fault.hole_on_segment: f"hole {i} at {place} lies on a segment: move it into the hole",
+        Fault.region_seed_outside: f"the point of {seed_text(domain, i)} at {place} is not inside "
+        "the domain: move or remove it, or check `holes` (holes=[] if there are none)",
+        Fault.region_seed_on_segment: f"the point of {seed_text(domain, i)} at {place} lies on a "
         "segment: move it into the region",
-        "two_seeds_one_region": f"{seed_text(domain, i)} and {seed_text(domain, j)} are the same "
-        "part of the domain: remove one, or separate them by segments",
-        "point_outside": f"point {i} at {place} is on no segment and outside the domain, or in a "
-        f"hole: remove it, {OR_REPAIR}",
-        "empty_domain": "nothing is left inside: every part of the domain is a hole",
-        "too_few_points": f"expected at least 3 points, got {i}",
-        "too_many_points": f"{i} points are more than can be numbered with 32 bits: divide the "
+        Fault.two_seeds_one_region: f"{seed_text(domain, i)} and {seed_text(domain, j)} are the "
+        "same part of the domain: remove one, or separate them by segments",
+        Fault.point_outside: f"point {i} at {place} is on no segment and outside the domain, or in "
+        f"a hole: remove it, {OR_REPAIR}",
+        Fault.empty_domain: "nothing is left inside: every part of the domain is a hole",
+        Fault.too_few_points: f"expected at least 3 points, got {i}",
+        Fault.too_many_points: f"{i} points are more than can be numbered with 32 bits: divide the "
         "domain",
-        "not_finite": f"point {i} at {place} is not finite: remove it or give it coordinates",
-        "segment_out_of_range": f"segment {i} names point {j}, but the points are numbered 0 to "
-        f"{len(domain.points) - 1}",
-        "degenerate_segment": f"{line} begins and ends at the same point, {j} at "
+        Fault.not_finite: f"point {i} at {place} is not finite: remove it or give it coordinates",
+        Fault.segment_out_of_range: f"segment {i} names point {j}, but the points are numbered 0 "
+        f"to {len(domain.points) - 1}",
+        Fault.degenerate_segment: f"{line} begins and ends at the same point, {j} at "
         f"{place}: remove it, {OR_REPAIR}",
     }
     return messages[kind]

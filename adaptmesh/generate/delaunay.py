@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from adaptmesh._core import Fault
+from adaptmesh._core import InputError
 from adaptmesh._core import delaunay as core_delaunay
 from adaptmesh.errors import DomainError
 
@@ -61,7 +61,7 @@ def delaunay(points: ArrayLike) -> NDArray[np.int32]:
     array = _checked(points)
     try:
         triangles, _ = core_delaunay(array)
-    except Fault as fault:
+    except InputError as fault:
         # Collinear points are the only fault that was not excluded above.
         low, high = array.min(axis=0), array.max(axis=0)
         raise DomainError(

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import metrics
-from adaptmesh._core import BoundaryCuts, Fault, Monitor, Placement
+from adaptmesh._core import BoundaryCuts, InputError, Monitor, Placement
 from adaptmesh._core import generate as generate_in_core
 from adaptmesh.boundary.discretise import cut_boundary
 from adaptmesh.boundary.vertex_limit import Progress, VertexLimit
@@ -136,7 +136,7 @@ def _meshed(
             field,
             monitor,
         )
-    except Fault as fault:
+    except InputError as fault:
         raise DomainError(fault_text(domain, *fault.args)) from None
 
 

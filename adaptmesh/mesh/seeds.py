@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from adaptmesh._core import Fault, triangulate
+from adaptmesh._core import InputError, triangulate
 from adaptmesh.domain.inputs import rows_of_each
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.containing import containing_triangles
@@ -43,7 +43,7 @@ def hole_points(mesh: MeshData, points: Floats, segments: Ints) -> Floats:
     nowhere = np.empty((0, 2))
     try:
         filled, _, pieces, _, _ = triangulate(points, segments, nowhere, nowhere, False)
-    except Fault as fault:
+    except InputError as fault:
         *_, x, y = fault.args
         raise DomainError(
             f"the mesh lies over itself near ({x:.17g}, {y:.17g}), so it covers no domain; its "

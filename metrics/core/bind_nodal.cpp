@@ -29,9 +29,9 @@ Tensor load(const double* p) {
 }
 
 // The edges of triangles with numbers below `count`, sorted; and which of them each side is on.
-nb::tuple mesh_edges(Triangles triangles, std::size_t count) {
+auto mesh_edges(Triangles triangles, std::size_t count) {
     const std::size_t m = triangles.shape(0);
-    Result<Index> sides(m, 3);
+    Result<Index, 3> sides(m);
     std::vector<Index> found;
     {
         nb::gil_scoped_release release;
@@ -42,12 +42,12 @@ nb::tuple mesh_edges(Triangles triangles, std::size_t count) {
             found.push_back(low), found.push_back(high);
         });
     }
-    Result<Index> edges(found.size() / 2, 2);
+    Result<Index, 2> edges(found.size() / 2);
     std::copy(found.begin(), found.end(), edges.data);
-    return nb::make_tuple(edges.numpy(), sides.numpy());
+    return std::make_tuple(edges.numpy(), sides.numpy());
 }
 
-nb::object lengths_by_quadrature(Tensors logs_at_start, Tensors logs_at_end, Points edges) {
+auto lengths_by_quadrature(Tensors logs_at_start, Tensors logs_at_end, Points edges) {
     const std::size_t k = edges.shape(0);
     require(logs_at_start.shape(0) == k && logs_at_end.shape(0) == k,
             "one tensor at each end of each edge is needed");
@@ -64,7 +64,7 @@ nb::object lengths_by_quadrature(Tensors logs_at_start, Tensors logs_at_end, Poi
 }
 
 // Metric areas of triangles, negative for clockwise ones.
-nb::object areas(Points points, Triangles triangles, Tensors tensors) {
+auto areas(Points points, Triangles triangles, Tensors tensors) {
     const std::size_t n = points.shape(0), m = triangles.shape(0);
     require(tensors.shape(0) == n, "one tensor for each point is needed");
     Result<double> out(m);
@@ -88,9 +88,9 @@ nb::object areas(Points points, Triangles triangles, Tensors tensors) {
 
 // Along the edge opposite each corner, how much the derivative changes from end to end, times the
 // length of the edge.
-nb::object bends(Points points, Triangles triangles, Points gradients) {
+auto bends(Points points, Triangles triangles, Points gradients) {
     require(gradients.shape(0) == points.shape(0), "one gradient for each point is needed");
-    Result<double> out(triangles.shape(0), 3);
+    Result<double, 3> out(triangles.shape(0));
     {
         nb::gil_scoped_release release;
         const double *p = points.data(), *g = gradients.data();
@@ -106,7 +106,7 @@ nb::object bends(Points points, Triangles triangles, Points gradients) {
 }
 
 // The square of the shortest edge at each vertex, infinite where there is none.
-nb::object shortest_squares(Points points, Triangles triangles) {
+auto shortest_squares(Points points, Triangles triangles) {
     Result<double> out(points.shape(0));
     {
         nb::gil_scoped_release release;
@@ -124,11 +124,11 @@ nb::object shortest_squares(Points points, Triangles triangles) {
     return out.numpy();
 }
 
-nb::object graded(Tensors tensors, Points points, Triangles triangles, int law, double log_beta,
-                  double tolerance) {
+auto graded(Tensors tensors, Points points, Triangles triangles, int law, double log_beta,
+            double tolerance) {
     const std::size_t n = points.shape(0);
     require(tensors.shape(0) == n, "one tensor for each point is needed");
-    Result<double> out(n, 3);
+    Result<double, 3> out(n);
     {
         nb::gil_scoped_release release;
         const metrics::Adjacency mesh(triangles.data(), triangles.shape(0), n);
@@ -144,10 +144,11 @@ nb::object graded(Tensors tensors, Points points, Triangles triangles, int law, 
     return out.numpy();
 }
 
-nb::tuple quadratic_fit(Points points, Triangles triangles, Values values) {
+auto quadratic_fit(Points points, Triangles triangles, Values values) {
     const std::size_t n = points.shape(0);
     require(values.shape(0) == n, "one value for each point is needed");
-    Result<double> gradients(n, 2), hessians(n, 3);
+    Result<double, 2> gradients(n);
+    Result<double, 3> hessians(n);
     std::int64_t undetermined = -1;
     {
         nb::gil_scoped_release release;
@@ -161,13 +162,13 @@ nb::tuple quadratic_fit(Points points, Triangles triangles, Values values) {
             h[0] = d.hessian.a, h[1] = d.hessian.b, h[2] = d.hessian.c;
         }
     }
-    return nb::make_tuple(gradients.numpy(), hessians.numpy(), undetermined);
+    return std::make_tuple(gradients.numpy(), hessians.numpy(), undetermined);
 }
 
-nb::object projected_gradients(Points points, Triangles triangles, Values values) {
+auto projected_gradients(Points points, Triangles triangles, Values values) {
     const std::size_t n = points.shape(0);
     require(values.shape(0) == n, "one value for each point is needed");
-    Result<double> out(n, 2);
+    Result<double, 2> out(n);
     {
         nb::gil_scoped_release release;
         metrics::project_gradient(points.data(), n, triangles.data(), triangles.shape(0),
@@ -177,10 +178,10 @@ nb::object projected_gradients(Points points, Triangles triangles, Values values
 }
 
 // By Green's formula inside, and at the border of the quadratic fit.
-nb::tuple green_hessians(Points points, Triangles triangles, Values values) {
+auto green_hessians(Points points, Triangles triangles, Values values) {
     const std::size_t n = points.shape(0), m = triangles.shape(0);
     require(values.shape(0) == n, "one value for each point is needed");
-    Result<double> out(n, 3);
+    Result<double, 3> out(n);
     std::int64_t undetermined = -1;
     {
         nb::gil_scoped_release release;
@@ -199,7 +200,7 @@ nb::tuple green_hessians(Points points, Triangles triangles, Values values) {
             h[0] = d.hessian.a, h[1] = d.hessian.b, h[2] = d.hessian.c;
         }
     }
-    return nb::make_tuple(out.numpy(), undetermined);
+    return std::make_tuple(out.numpy(), undetermined);
 }
 
 }  // namespace

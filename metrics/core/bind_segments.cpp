@@ -30,10 +30,11 @@ void construct_segments(metrics::Segments* self, Ends ends) {
     new (self) metrics::Segments(ends.data(), ends.shape(0));
 }
 
-nb::tuple nearest(const metrics::Segments& segments, Points points) {
+auto nearest(const metrics::Segments& segments, Points points) {
     const std::size_t n = points.shape(0);
     Result<Index> number(n);
-    Result<double> share(n), foot(n, 2);
+    Result<double> share(n);
+    Result<double, 2> foot(n);
     {
         nb::gil_scoped_release release;
         Index hint = -1;
@@ -43,7 +44,7 @@ nb::tuple nearest(const metrics::Segments& segments, Points points) {
             foot.data[2 * i] = place.x, foot.data[2 * i + 1] = place.y;
         });
     }
-    return nb::make_tuple(number.numpy(), share.numpy(), foot.numpy());
+    return std::make_tuple(number.numpy(), share.numpy(), foot.numpy());
 }
 
 void prepare_rings(metrics::Segments& segments, Numbers left) {
@@ -52,7 +53,7 @@ void prepare_rings(metrics::Segments& segments, Numbers left) {
     segments.prepare_rings(left.data());
 }
 
-nb::object encloses(const metrics::Segments& segments, Points points) {
+auto encloses(const metrics::Segments& segments, Points points) {
     Result<bool> out(points.shape(0));
     {
         nb::gil_scoped_release release;
@@ -71,7 +72,7 @@ void construct_spreading(metrics::Spreading* self, const metrics::Segments& segm
     new (self) metrics::Spreading(segments, sizes.data(), growth);
 }
 
-nb::object spread(const metrics::Spreading& spreading, Points points) {
+auto spread(const metrics::Spreading& spreading, Points points) {
     Result<double> out(points.shape(0));
     {
         nb::gil_scoped_release release;

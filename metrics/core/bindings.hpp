@@ -3,10 +3,15 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 
 namespace nb = nanobind;
 
@@ -22,22 +27,25 @@ using Matrices = nb::ndarray<const double, nb::shape<-1, 2, 2>, nb::c_contig, nb
 using Triangles = nb::ndarray<const Index, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Indices = nb::ndarray<const Index, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
-// A numpy array in the making: `data` is filled without the lock, `numpy` hands it over.
-template <typename T>
+// A numpy array of n numbers, or with COLUMNS of n rows, in the making: `data` is filled without
+// the lock, `numpy` hands it over.
+template <typename T, int COLUMNS = 0>
 struct Result {
-    std::size_t rows, columns;  // columns 0: a one-dimensional array
+    using Shape = std::conditional_t<COLUMNS == 0, nb::shape<-1>, nb::shape<-1, COLUMNS>>;
+    using Array = nb::ndarray<nb::numpy, T, Shape, nb::c_contig>;
+
+    std::size_t rows;
     T* data;
     nb::capsule owner;
 
-    explicit Result(std::size_t rows, std::size_t columns = 0)
+    explicit Result(std::size_t rows)
         : rows(rows),
-          columns(columns),
-          data(new T[rows * (columns ? columns : 1)]),
+          data(new T[rows * (COLUMNS ? COLUMNS : 1)]),
           owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); }) {}
 
-    nb::object numpy() const {
-        const std::size_t shape[2] = {rows, columns};
-        return nb::cast(nb::ndarray<nb::numpy, T>(data, columns ? 2 : 1, shape, owner));
+    Array numpy() const {
+        const std::size_t shape[2] = {rows, COLUMNS};
+        return Array(data, COLUMNS ? 2 : 1, shape, owner);
     }
 };
 

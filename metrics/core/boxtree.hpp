@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "metrics/core/counting.hpp"
+#include "metrics/core/radix_sort.hpp"
 
 namespace metrics {
 

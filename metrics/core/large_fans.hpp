@@ -4,7 +4,7 @@
 //          c   b
 //           \ /         from any direction the nearest is found by bisection,
 //      d --- w --- a    and its neighbours on both sides follow in turn
-//           / \
+//           / \              .
 //          e   f
 #pragma once
 

@@ -29,60 +29,23 @@ struct OnSegment {
 class Segments {
   public:
     // ends: count times ax, ay, bx, by.
-    Segments(const double* ends, std::size_t count) {
-        std::vector<Box> boxes(count);
-        segments_.reserve(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            const double* p = ends + 4 * i;
-            segments_.push_back({p[0], p[1], p[2], p[3]});
-            boxes[i].include(p[0], p[1]), boxes[i].include(p[2], p[3]);
-        }
-        tree_ = BoxTree(boxes);
-    }
+    Segments(const double* ends, std::size_t count);
 
     std::size_t size() const { return segments_.size(); }
 
     // `hint`: a segment that is probably near, -1 for none; it changes the time taken only.
-    OnSegment nearest(double x, double y, std::int32_t hint = -1) const {
-        const auto squared_distance = [&](std::int32_t i) {
-            const OnSegment place = foot(i, x, y);
-            const double dx = place.x - x, dy = place.y - y;
-            return dx * dx + dy * dy;
-        };
-        return foot(tree_.nearest(x, y, squared_distance, hint), x, y);
-    }
+    OnSegment nearest(double x, double y, std::int32_t hint = -1) const;
 
     // Makes ready for `encloses`, for segments of closed rings: `left` is the lowest x of the ring
     // of each. What is left of a ring crosses an even number of its segments, and asks for none:
     //
     //      x -->   ring box:  [left ... ]      without the bound, a row of many rings would be
     //                                          asked one by one
-    void prepare_rings(const double* left) {
-        std::vector<Box> boxes(segments_.size());
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            const Segment& s = segments_[i];
-            boxes[i].include(left[i], s.ay), boxes[i].include(s.bx, s.by);
-            boxes[i].include(s.ax, s.ay);
-        }
-        rings_ = BoxTree(boxes);
-    }
+    void prepare_rings(const double* left);
 
     // Whether an odd number of the segments cross the ray from (x, y) to the right: for the
     // segments of closed rings, whether the point is inside. Ends belong to what is above them.
-    bool encloses(double x, double y) const {
-        bool odd = false;
-        const auto reached = [x, y](const Box& box) {
-            return box.y0 <= y && y < box.y1 && box.x0 <= x && x <= box.x1;
-        };
-        rings_.matching(reached, [&](std::int32_t i) {
-            const Segment& s = segments_[i];
-            const double rise = s.by - s.ay;
-            const double side = (s.bx - s.ax) * (y - s.ay) - (x - s.ax) * rise;
-            odd ^= rise > 0 ? side > 0 : side < 0;
-            return false;
-        });
-        return odd;
-    }
+    bool encloses(double x, double y) const;
 
   private:
     friend class Spreading;
@@ -92,20 +55,9 @@ class Segments {
         double length() const { return std::hypot(bx - ax, by - ay); }
     };
 
-    OnSegment at(std::int32_t i, double share) const {
-        const Segment& s = segments_[i];
-        if (share <= 0) return {i, 0, s.ax, s.ay};
-        if (share >= 1) return {i, 1, s.bx, s.by};
-        return {i, share, s.ax + share * (s.bx - s.ax), s.ay + share * (s.by - s.ay)};
-    }
+    OnSegment at(std::int32_t i, double share) const;
 
-    OnSegment foot(std::int32_t i, double x, double y) const {
-        const Segment& s = segments_[i];
-        const double ex = s.bx - s.ax, ey = s.by - s.ay;
-        const double square = ex * ex + ey * ey;
-        const double along = (x - s.ax) * ex + (y - s.ay) * ey;
-        return at(i, square > 0 ? along / square : 0);
-    }
+    OnSegment foot(std::int32_t i, double x, double y) const;
 
     std::vector<Segment> segments_;
     BoxTree tree_, rings_;

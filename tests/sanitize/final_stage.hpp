@@ -8,12 +8,12 @@
 #include <functional>
 #include <vector>
 
-#include "adaptmesh/core/along_edges.hpp"
-#include "adaptmesh/core/cut_boundary.hpp"
-#include "adaptmesh/core/final_optimisation.hpp"
-#include "adaptmesh/core/front.hpp"
-#include "adaptmesh/core/generate.hpp"
-#include "adaptmesh/core/optimise.hpp"
+#include "adaptmesh/core/mesher/cut_boundary.hpp"
+#include "adaptmesh/core/mesher/final_optimisation.hpp"
+#include "adaptmesh/core/mesher/generate.hpp"
+#include "adaptmesh/core/mesher/optimise.hpp"
+#include "adaptmesh/core/placements/along_edges.hpp"
+#include "adaptmesh/core/placements/front.hpp"
 #include "tests/sanitize/mesher.hpp"
 
 namespace sanitize {

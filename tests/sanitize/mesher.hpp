@@ -6,10 +6,10 @@
 #include <functional>
 #include <vector>
 
-#include "adaptmesh/core/boundary_cuts.hpp"
-#include "adaptmesh/core/edge_sampler.hpp"
-#include "adaptmesh/core/metric_field.hpp"
-#include "adaptmesh/core/triangulate.hpp"
+#include "adaptmesh/core/mesher/boundary_cuts.hpp"
+#include "adaptmesh/core/mesher/edge_sampler.hpp"
+#include "adaptmesh/core/mesher/metric_field.hpp"
+#include "adaptmesh/core/triangulation/cdt.hpp"
 
 namespace sanitize {
 

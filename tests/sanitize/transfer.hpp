@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "adaptmesh/core/accurate_area.hpp"
-#include "adaptmesh/core/exact_location.hpp"
-#include "adaptmesh/core/moments.hpp"
-#include "adaptmesh/core/overlay.hpp"
-#include "adaptmesh/core/ranges.hpp"
-#include "adaptmesh/core/triangulation.hpp"
+#include "adaptmesh/core/geometry/accurate_area.hpp"
+#include "adaptmesh/core/transfer/exact_location.hpp"
+#include "adaptmesh/core/transfer/field_bounds.hpp"
+#include "adaptmesh/core/transfer/moments.hpp"
+#include "adaptmesh/core/transfer/overlay.hpp"
+#include "adaptmesh/core/triangulation/triangulation.hpp"
 
 namespace sanitize {
 

@@ -1,9 +1,7 @@
 // The core over degenerate inputs, to be run under sanitizers. From the root of the project:
 //
-//   g++ -std=c++17 -O1 -g -Wall -Wextra -ffp-contract=off -D_GLIBCXX_ASSERTIONS
-//       -fsanitize=address,undefined -fno-sanitize-recover=all -I. tests/sanitize/zoo.cpp
-//       $(ls adaptmesh/core/*.cpp | grep -v bind) -o zoo
-//   ./zoo
+//   cmake -S . -B build/sanitize -DADAPTMESH_SANITIZE=ON && cmake --build build/sanitize
+//   build/sanitize/zoo
 //
 // Prints what it ran; a failed check or a sanitizer ends it with an error. To add a part of the
 // core: write a function that runs it on one Input and checks the outcome, and add it to PARTS.
@@ -17,10 +15,10 @@
 #include <utility>
 #include <vector>
 
-#include "adaptmesh/core/border_sweep.hpp"
-#include "adaptmesh/core/generate.hpp"
-#include "adaptmesh/core/load.hpp"
-#include "adaptmesh/core/triangulate.hpp"
+#include "adaptmesh/core/edit/load.hpp"
+#include "adaptmesh/core/mesher/generate.hpp"
+#include "adaptmesh/core/triangulation/cdt.hpp"
+#include "adaptmesh/core/validate/border_sweep.hpp"
 #include "tests/sanitize/final_stage.hpp"
 #include "tests/sanitize/mesher.hpp"
 #include "tests/sanitize/transfer.hpp"
@@ -420,7 +418,7 @@ int main() {
                     try {
                         part(input);
                         ++meshes;
-                    } catch (const Fault&) {
+                    } catch (const InputError&) {
                         ++faults;
                     } catch (const TooManyVertices&) {
                         ++too_large;

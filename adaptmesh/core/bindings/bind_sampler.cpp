@@ -1,0 +1,71 @@
+// Measuring and cutting straight lines by the metric, as Python sees it.
+#include <algorithm>
+#include <cmath>
+
+#include "adaptmesh/core/bindings/arrays.hpp"
+#include "adaptmesh/core/bindings/callbacks.hpp"
+#include "adaptmesh/core/mesher/edge_sampler.hpp"
+
+using namespace adaptmesh;
+
+namespace {
+
+// The metric is looked at this closely along lines of the domain, in metric length: a layer that
+// meets the boundary between two looks would be missed there for good.
+constexpr double LONGEST_CHORD = 0.125;
+
+void measure_edges(EdgeSampler* self, const Points& points, const Tensors& tensors,
+                   const IndexPairs& edges, const nb::callable& metric, Index max_vertices) {
+    expect_rows(tensors.shape(0), points.shape(0), "tensors");
+    const std::vector<Point> at = to_points(points);
+    const std::vector<Tensor> metric_at = to_tensors(tensors);
+    const double max_chords =
+        std::min(max_vertices * 2 / LONGEST_CHORD, double(EdgeSampler::MAX_CHORDS));
+    EdgeSampler sampler(LONGEST_CHORD, INFINITY, 0.0);
+    for (std::size_t i = 0; i < edges.shape(0); ++i) {
+        const Index a = edges(i, 0), b = edges(i, 1);
+        sampler.add(at[a], metric_at[a], at[b], metric_at[b]);
+    }
+    {
+        nb::gil_scoped_release release;
+        sampler.measure(metric_of(metric), std::size_t(max_chords));
+    }
+    new (self) EdgeSampler(std::move(sampler));
+}
+
+auto lengths(const EdgeSampler& sampler) {
+    std::vector<double> lengths = sampler.lengths();
+    return column(std::move(lengths));
+}
+
+// What cuts every edge into unit pieces: shares of it from its start, and the edge of each.
+auto cut_to_unit(const EdgeSampler& sampler) {
+    std::vector<FieldPoint> cuts;
+    std::vector<double> shares;
+    std::vector<Index> edges;
+    for (Index e = 0; e < sampler.edge_count(); ++e) {
+        cuts.clear();
+        sampler.cut(e, Index(unit_parts(sampler.lengths()[e])), cuts);
+        for (const FieldPoint& p : cuts) shares.push_back(p.t);
+        edges.insert(edges.end(), cuts.size(), e);
+    }
+    return std::make_tuple(column(std::move(shares)), column(std::move(edges)));
+}
+
+}  // namespace
+
+void bind_sampler(nb::module_& m) {
+    m.attr("LONGEST_CHORD") = LONGEST_CHORD;
+    m.attr("AGREEMENT") = EdgeSampler::AGREEMENT;
+    m.attr("SHORTEST_CHORD") = EdgeSampler::SHORTEST_CHORD;
+    m.attr("FINE_DEPTH") = EdgeSampler::FINE_DEPTH;
+    m.attr("LONGEST_FINE_CHORD") = EdgeSampler::LONGEST_FINE_CHORD;
+    nb::class_<EdgeSampler>(m, "MeasuredEdges", "Straight edges, measured with the exact metric.")
+        .def("__init__", &measure_edges, nb::arg("points"), nb::arg("tensors"), nb::arg("edges"),
+             nb::arg("metric"), nb::arg("max_vertices"),
+             "Edges (k, 2) between points with these metrics; if they are longer than so many "
+             "vertices, by far, that is TooManyVertices.")
+        .def("lengths", &lengths)
+        .def("cut", &cut_to_unit,
+             "What cuts the edges into unit pieces: shares of an edge, and the edge of each.");
+}
