@@ -29,10 +29,12 @@ from .io import read, read_fields, read_metric, read_sol, write, write_sol
 from .io.domains.read import read_domain
 from .loop.adapt_loop import adapt_loop
 from .loop.errors import LoopError, LoopInterrupted, TransientError, TransientInterrupted
-from .loop.history import History, Iteration
+from .loop.history import History
+from .loop.iteration import Iteration
+from .loop.records import Interval
 from .loop.solution import Solution
 from .loop.stopping import Budget
-from .loop.transient_history import Interval, TransientHistory
+from .loop.transient_history import TransientHistory
 from .loop.transient_loop import transient_loop
 from .mesh.mesh import Mesh
 from .mesh.validate.validate import Validity, validate

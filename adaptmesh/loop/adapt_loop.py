@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import inspect
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
-from pathlib import Path
-from types import MappingProxyType
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,22 +12,32 @@ import numpy as np
 from adaptmesh.adapt.adapt import adapt
 from adaptmesh.checks import expect_function
 from adaptmesh.errors import BudgetError, MetricError
-from adaptmesh.geometry.smallest_rectangle import longer_side
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.transfer.transfer import METHODS
-from adaptmesh.transfer.transfer import transfer as transferred
+from adaptmesh.transfer.transfer import transfer as transfer_fields
 from adaptmesh.value import FrozenMapping
 from metrics import Background, Limits, nodal_lengths
 
-from . import history_files as files
+from .base_history import PathLike
 from .errors import LoopError, LoopInterrupted
-from .history import History, Iteration, PathLike, Seconds, Snapshot
-from .option_text import option_as_text
-from .solution import Solved, as_solved, space_of
+from .history import History
+from .iteration import Iteration
+from .records import Snapshot
+from .resume import (
+    check_transfer,
+    default_h_max,
+    is_saved_in,
+    load_earlier,
+    options_as_text,
+    prepare_folder,
+    with_domain,
+)
+from .solution import Solution, check_solution, space_of
+from .solve import Solve
+from .step import Step
 from .stopping import Budget, StoppingRule
-from .target import Steering, check_reachable
+from .target import Target
+from .vertex_count import check_reachable
 
-SHARE_OF_EXTENT = 0.25  # the largest size, where none is given
 UNIT = (np.sqrt(0.5), np.sqrt(2.0))
 
 
@@ -63,8 +69,8 @@ def adapt_loop(
     """Solve and adapt in turn until the mesh is the best for the solution on it.
 
     In each iteration, `solve` is called with the mesh. From the values that it returns Hessians are
-    recovered, and from these the metric of least interpolation error for the vertices or the error
-    asked for; see `metrics.metric_from_hessians`. The mesh is adapted to it, the fields are
+    recovered, and from these the metric of minimal interpolation error for the vertices or the
+    error asked for; see `metrics.metric_from_hessians`. The mesh is adapted to it, the fields are
     transferred, and `solve` is called again.
 
     Parameters
@@ -75,21 +81,22 @@ def adapt_loop(
         form in which it was returned: an initial guess. It is None in the first iteration.
 
         Returns one of: values at the vertices (n,); a dict of fields by name, each (n,), or (n, k)
-        with k components; a metric, as a control space or an array (n, 3) or (n, 2, 2), which then
-        steers the mesh; or a `Solution`, which can hold all of that and the solver's own error.
+        with k components; a metric, as a control space or an array (n, 3) or (n, 2, 2), to which
+        the mesh is then adapted; or a `Solution`, which can hold all of that and the solver's own
+        error.
     mesh : Mesh
         To begin with. If it has no domain, `Mesh.to_domain` finds it once.
     target_vertices : float, optional
-        The number of vertices wanted.
+        The number of vertices of the mesh.
     error : float or mapping of str to float, optional
-        Instead: the L^p norm of the interpolation error wanted, as estimated on the mesh
+        Instead: the L^p norm of the interpolation error, as estimated on the mesh
         (`metrics.interpolation_errors`); for each field, or by name. Without either, `solve` must
         return a metric, which is taken as it is.
     p : float, optional
         Of the norm, from 1 to inf.
     fields : sequence of str, optional
-        The fields that steer the mesh; by default all that are real, at the vertices, and not the
-        same everywhere. The others are transferred all the same.
+        The fields that the mesh is adapted to; by default all that are real, at the vertices, and
+        not the same everywhere. The others are transferred all the same.
     h_min, h_max, max_anisotropy, gradation : optional
         Bounds on sizes, their ratio and their growth; see `metrics.Limits`. By default `h_max` is
         a quarter of the longer side of the smallest rectangle around the mesh, in any direction:
@@ -150,106 +157,75 @@ def adapt_loop(
     if not isinstance(budget, Budget):
         raise TypeError(f"budget={budget!r}: give adaptmesh.Budget(vertices=..., seconds=...)")
     expect_function("callback", callback)
+    _check_keep_last(keep_last, save)
     mesh = with_domain(mesh)
     if h_max is None:
-        h_max = largest_size(mesh)
-    steering = Steering(
-        target_vertices,
-        error,
-        p,
-        fields,
-        Limits(h_min, h_max, max_anisotropy, gradation),
-        recovery,
-        combine,
-        growth,
-        order,
-        budget.vertices,
+        h_max = default_h_max(mesh)
+    target = Target(
+        target_vertices=target_vertices,
+        error=error,
+        p=p,
+        fields=fields,
+        limits=Limits(h_min, h_max, max_anisotropy, gradation),
+        recovery=recovery,
+        combine=combine,
+        growth=growth,
+        order=order,
+        max_vertices=budget.vertices,
     )
     if target_vertices is not None:
         check_reachable(target_vertices, mesh, h_max)
     rule = StoppingRule(tolerance, max_iterations, budget)
-    work = Work(Solver(solve), mesh, steering, transfer)
-    keeping = Keeping(None if save is None else Path(save).absolute(), keep_last)
-    history = keeping.begun(_resumed(resume, mesh, steering, rule), resume)
+    adaptation = Adaptation(Solve(solve), mesh, target, transfer)
+    history = _resumed(resume, mesh, target, rule)
+    folder = prepare_folder(save, history, resume)
+    if folder is not None and is_saved_in(folder, resume) and _is_estimated_again(history):
+        history.append(folder)
     started = time.monotonic()
     while True:
-        clock = Clock()
         number = len(history)
-        with _explained(history, number, clock):
-            ended = rule.ended(history, steering, time.monotonic() - started)
+        with Step(history, LoopError, LoopInterrupted, "stopping rule", iteration=number) as step:
+            ended = rule.ended(history, target, time.monotonic() - started)
             if ended is None:
                 try:
-                    history = history.with_iteration(work.next(history, clock))
+                    history = history.with_iteration(adaptation.next(history, step))
                 except BudgetError as refusal:
                     ended = history.ended(str(refusal), False)
-        with _explained(history, number, clock):
             if ended is not None:
-                return keeping.finished(ended)
-            history = keeping.kept(history, clock)
+                if folder is not None:
+                    ended.write_list(folder)
+                return ended
+            step.history = history
+            if folder is not None:
+                step.stage = "save"
+                history.append(folder)
+                if keep_last is not None:
+                    step.history = history = history.left_on_disk(folder, keep_last)
             if callback is not None:
-                clock.stage = "callback"
+                step.stage = "callback"
                 callback(history[-1])
 
 
-@dataclass
-class Clock:
-    """Which stage is at work, and how long each has taken."""
-
-    stage: str = "stopping rule"
-    seconds: Seconds = field(default_factory=Seconds)
-
-    @contextmanager
-    def of(self, stage: str, name: str = "") -> Iterator[None]:
-        """Count the time to a stage, which an error calls by another name if that is given."""
-        self.stage = name or stage
-        start = time.perf_counter()
-        yield
-        self.seconds += Seconds(**{stage: time.perf_counter() - start})
-
-
-class Solver:
-    """The user's solve, called in the way it is written for."""
-
-    def __init__(self, solve: Callable[..., Any]) -> None:
-        if not callable(solve):
-            raise TypeError(f"solve must be a function of a mesh, not {type(solve).__name__}")
-        try:
-            parameters = inspect.signature(solve).parameters
-        except (TypeError, ValueError):  # some callables made in C do not tell
-            parameters = MappingProxyType({})
-        self.solve = solve
-        self.takes_previous = "previous" in parameters
-        needed = [
-            q.name
-            for q in parameters.values()
-            if q.default is q.empty and q.kind in (q.POSITIONAL_ONLY, q.POSITIONAL_OR_KEYWORD)
-        ]
-        if len(needed) > 1 and set(needed[1:]) != {"previous"}:
-            raise TypeError(
-                f"solve needs {len(needed)} arguments, {', '.join(needed)}: it is called with a "
-                "mesh, and with the last fields if it has a parameter `previous`"
-            )
-
-    def __call__(self, mesh: Mesh, previous: Any) -> Any:
-        return self.solve(mesh, previous=previous) if self.takes_previous else self.solve(mesh)
+def _check_keep_last(keep_last: int | None, save: PathLike | None) -> None:
+    if keep_last is not None and keep_last < 1:
+        raise ValueError(f"keep_last={keep_last!r}: at least the last mesh is needed")
+    if keep_last is not None and save is None:
+        raise ValueError("keep_last needs `save`, the folder where the other meshes are kept")
 
 
 @dataclass(frozen=True, eq=False)
-class Work:
+class Adaptation:
     """What is done in an iteration."""
 
-    solve: Solver
+    solve: Solve
     mesh: Mesh
-    steering: Steering
+    target: Target
     transfer: str
 
     def __post_init__(self) -> None:
-        if self.transfer not in METHODS:
-            raise ValueError(
-                f"transfer={self.transfer!r} is none of {', '.join(map(repr, METHODS))}"
-            )
+        check_transfer(self.transfer)
 
-    def next(self, history: History, clock: Clock) -> Iteration:
+    def next(self, history: History, step: Step[History]) -> Iteration:
         """A mesh for the last metric, the solution on it, and the metric for the next.
 
         The first solution for these options starts without a previous one.
@@ -257,125 +233,51 @@ class Work:
         mesh, previous, unit = self.mesh, None, np.nan
         if history:
             last = history[-1].snapshot
-            with clock.of("adapt"):
+            with step.timed("adapt"):
                 field = Background.on(last.mesh, last.metric)
-                mesh = adapt(last.mesh, field, max_vertices=self.steering.max_vertices)
+                mesh = adapt(last.mesh, field, max_vertices=self.target.max_vertices)
                 unit = _unit_fraction(mesh, field)
             if self.solve.takes_previous and history.for_options:
-                with clock.of("transfer"):
-                    previous = self._carried(last.solved, last.mesh, mesh)
-        with clock.of("solve"):
-            solved = as_solved(self.solve(mesh, previous), mesh)
-        with clock.of("metric"):
-            metric, errors = self.steering.metric(mesh, solved, history.for_options)
+                with step.timed("transfer"):
+                    previous = self._transferred(last.solution, last.mesh, mesh)
+        with step.timed("solve"):
+            solution = check_solution(self.solve(mesh, previous), mesh)
+        with step.timed("metric"):
+            metric, errors = self.target.metric(mesh, solution, history.for_options)
         return Iteration(
             number=len(history),
             n_points=len(mesh.points),
             n_triangles=len(mesh.triangles),
             errors=FrozenMapping(errors),
             unit_fraction=unit,
-            seconds=clock.seconds,
-            kept=Snapshot(mesh, solved, metric),
+            seconds=step.seconds,
+            kept=Snapshot(mesh, solution, metric),
         )
 
-    def _carried(self, solved: Solved, old: Mesh, new: Mesh) -> Any:
-        spaces = {name: space_of(values, old) for name, values in solved.fields.items()}
-        fields = transferred(solved.fields, old, new, method=self.transfer, space=spaces)
-        return solved.as_returned(fields)
-
-
-@dataclass(frozen=True)
-class Keeping:
-    """Where iterations are kept: all in memory, or the older ones on disk only."""
-
-    folder: Path | None
-    last: int | None
-
-    def __post_init__(self) -> None:
-        if self.last is None:
-            return
-        if self.last < 1:
-            raise ValueError(f"keep_last={self.last!r}: at least the last mesh is needed")
-        if self.folder is None:
-            raise ValueError("keep_last needs `save`, the folder where the other meshes are kept")
-
-    def begun(self, history: History, resume: History | PathLike | None) -> History:
-        """Refuse to write over another history; write what an earlier call has left."""
-        if self.folder is None:
-            return history
-        same = not isinstance(resume, (History, type(None))) and (
-            Path(resume).resolve() == self.folder.resolve()
-        )
-        if not same:
-            files.refuse_history(self.folder)
-            files.save(history, self.folder)
-        elif history and isinstance(history[-1].kept, Snapshot):  # estimated again
-            files.append(history, self.folder)
-        return history
-
-    def kept(self, history: History, clock: Clock) -> History:
-        """Write the last iteration, and let go of the arrays that need not be in memory."""
-        if self.folder is None:
-            return history
-        clock.stage = "save"
-        files.append(history, self.folder)
-        if self.last is None:
-            return history
-        return files.left_on_disk(history, self.folder, self.last, history[-1].mesh.domain)
-
-    def finished(self, history: History) -> History:
-        if self.folder is not None:
-            files.write_list(history, self.folder)
-        return history
-
-
-@contextmanager
-def _explained(history: History, number: int, clock: Clock) -> Iterator[None]:
-    """Any exception, with the iteration, the stage, and the history until then."""
-    try:
-        yield
-    except KeyboardInterrupt as interrupt:
-        raise LoopInterrupted(history, number, clock.stage) from interrupt
-    except Exception as error:
-        raise LoopError(history, number, clock.stage, error) from error
-
-
-def largest_size(mesh: Mesh) -> float:
-    """That of a loop, where none is given: a share of the mesh, whichever way it is turned."""
-    return SHARE_OF_EXTENT * longer_side(mesh.points)
-
-
-def with_domain(mesh: Mesh) -> Mesh:
-    """The mesh with its domain, found once."""
-    if not isinstance(mesh, Mesh):
-        raise TypeError(f"a Mesh is wanted to begin with, not {type(mesh).__name__}")
-    return mesh if mesh.domain is not None else replace(mesh, domain=mesh.to_domain())
+    def _transferred(self, solution: Solution, old: Mesh, new: Mesh) -> Any:
+        spaces = {name: space_of(values, old) for name, values in solution.fields.items()}
+        fields = transfer_fields(solution.fields, old, new, method=self.transfer, space=spaces)
+        return solution.as_returned(fields)
 
 
 def _resumed(
-    resume: History | PathLike | None, mesh: Mesh, steering: Steering, rule: StoppingRule
+    resume: History | PathLike | None, mesh: Mesh, target: Target, rule: StoppingRule
 ) -> History:
     """The history to go on with: empty, or an earlier one that began with this mesh."""
-    options = {
-        name: option_as_text(value)
-        for options in (steering, rule)
-        for name, value in vars(options).items()
-        if value is not None
-    }
-    if resume is None:
-        return History(options=options)
-    earlier = resume if isinstance(resume, History) else History.load(resume, mesh.domain)
-    if earlier:
-        refuse_other_mesh(earlier[0].mesh, mesh)
+    options = options_as_text(target, rule)
+    earlier = load_earlier(resume, History, mesh)
     going_on = replace(earlier, reason="", converged=False, options=options)
-    if earlier.for_options and any(
-        earlier.options.get(name) != options.get(name) for name in steering.asked_for
-    ):
-        return _with_last_estimated_again(going_on, steering)
+    if earlier.for_options and not target.asks_for_the_same(earlier.options, options):
+        return _with_last_estimated_again(going_on, target)
     return going_on
 
 
-def _with_last_estimated_again(history: History, steering: Steering) -> History:
+def _is_estimated_again(history: History) -> bool:
+    """Whether the last metric is not the one on disk."""
+    return bool(history) and isinstance(history[-1].kept, Snapshot)
+
+
+def _with_last_estimated_again(history: History, target: Target) -> History:
     """The history with the metric and the errors of its last mesh by other options.
 
     Nothing of what was found for the earlier options counts as convergence. Where the last solution
@@ -385,34 +287,13 @@ def _with_last_estimated_again(history: History, steering: Steering) -> History:
     *before, last = history.iterations
     snapshot = last.snapshot
     try:
-        metric, errors = steering.metric(snapshot.mesh, snapshot.solved)
+        metric, errors = target.metric(snapshot.mesh, snapshot.solution)
     except MetricError:
         again = []
     else:
         kept = replace(snapshot, metric=metric)
         again = [replace(last, errors=FrozenMapping(errors), kept=kept)]
     return replace(history, iterations=(*before, *again), options_since=len(before))
-
-
-def refuse_other_mesh(first: Mesh, mesh: Mesh) -> None:
-    """Refuse to go on with a history that began with another mesh, or one of another domain."""
-    same = np.array_equal(first.points, mesh.points)
-    if not (same and np.array_equal(first.triangles, mesh.triangles)):
-        raise ValueError(
-            f"the history to resume began with another mesh ({len(first.points)} vertices) "
-            f"than is given ({len(mesh.points)} vertices)"
-        )
-    one, two = first.domain, mesh.domain
-    if one is None or two is None or one is two:
-        return
-    arrays = ("points", "segments", "segment_tags", "holes", "seeds", "seed_regions")
-    if not all(np.array_equal(getattr(one, name), getattr(two, name)) for name in arrays) or (
-        [(p.first, p.second) for p in one.periodic] != [(p.first, p.second) for p in two.periodic]
-    ):
-        raise ValueError(
-            "the history to resume is of another domain than the mesh that is given: give its "
-            "first mesh, or begin anew with its last"
-        )
 
 
 def _unit_fraction(mesh: Mesh, field: Background) -> float:

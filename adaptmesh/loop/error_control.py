@@ -43,9 +43,9 @@ def next_count(
     """
     x = np.log(np.asarray(counts[-MEMORY:], np.float64))
     y = np.log(np.maximum(np.asarray(excesses[-MEMORY:], np.float64), np.finfo(float).tiny))
-    wanted = x + y / _learned_order(x, y, order)  # by each mesh
+    counts_asked = x + y / _learned_order(x, y, order)  # by each mesh
     near = np.abs(y) < NEAR
-    answer = float(wanted[near].mean() if near[-1] else wanted[-1])
+    answer = float(counts_asked[near].mean() if near[-1] else counts_asked[-1])
     if len(x) > 1 and y[-1] * y[-2] < 0:
         answer = float(np.clip(answer, min(x[-2:]), max(x[-2:])))
     answer = min(answer, np.log(np.finfo(float).max) - 1)

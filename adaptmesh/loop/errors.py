@@ -10,11 +10,22 @@ from .history import History
 from .transient_history import TransientHistory
 
 
-class _Stopped(BaseException):
-    """Base of errors that hold more than their message: all of it is kept when they are pickled.
+class LoopStopped(BaseException):
+    """Base of what stops a loop: it holds the history until then, and where the loop was.
 
-    Without, the error of a loop in another process could not come back from there.
+    All attributes are kept when it is pickled: without, the error of a loop in another process
+    could not come back from there.
     """
+
+    history: Any
+    stage: str
+
+    def __init__(self, history: Any, stage: str, cause: Exception | None, **position: int) -> None:
+        self.history, self.stage = history, stage
+        vars(self).update(position)
+        where = ", ".join(f"{name} {number}" for name, number in position.items())
+        what = "interrupted" if cause is None else f"{type(cause).__name__}: {cause}"
+        super().__init__(f"{where}, {stage}: {what}")
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _unpickled, (type(self), self.args), vars(self)
@@ -25,7 +36,7 @@ def _unpickled(kind: type[BaseException], args: tuple[Any, ...]) -> BaseExceptio
     return kind.__new__(kind, *args)
 
 
-class LoopError(_Stopped, AdaptmeshError):
+class LoopError(LoopStopped, AdaptmeshError):
     """A loop that was stopped by an exception, which is its ``__cause__``.
 
     Attributes
@@ -39,20 +50,18 @@ class LoopError(_Stopped, AdaptmeshError):
         ``"callback"`` or ``"stopping rule"``.
     """
 
-    def __init__(self, history: History, iteration: int, stage: str, error: Exception) -> None:
-        self.history, self.iteration, self.stage = history, iteration, stage
-        super().__init__(f"iteration {iteration}, {stage}: {type(error).__name__}: {error}")
+    history: History
+    iteration: int
 
 
-class LoopInterrupted(_Stopped, KeyboardInterrupt):
+class LoopInterrupted(LoopStopped, KeyboardInterrupt):
     """Ctrl-C in a loop; `history`, `iteration` and `stage` are as those of `LoopError`."""
 
-    def __init__(self, history: History, iteration: int, stage: str) -> None:
-        self.history, self.iteration, self.stage = history, iteration, stage
-        super().__init__(f"iteration {iteration}, {stage}: interrupted")
+    history: History
+    iteration: int
 
 
-class TransientError(_Stopped, AdaptmeshError):
+class TransientError(LoopStopped, AdaptmeshError):
     """A loop in time that was stopped by an exception, which is its ``__cause__``.
 
     Attributes
@@ -66,18 +75,14 @@ class TransientError(_Stopped, AdaptmeshError):
         ``"save"`` or ``"callback"``.
     """
 
-    def __init__(
-        self, history: TransientHistory, sweep: int, interval: int, stage: str, error: Exception
-    ) -> None:
-        self.history, self.sweep, self.interval, self.stage = history, sweep, interval, stage
-        super().__init__(
-            f"sweep {sweep}, interval {interval}, {stage}: {type(error).__name__}: {error}"
-        )
+    history: TransientHistory
+    sweep: int
+    interval: int
 
 
-class TransientInterrupted(_Stopped, KeyboardInterrupt):
+class TransientInterrupted(LoopStopped, KeyboardInterrupt):
     """Ctrl-C in a loop in time; its attributes are those of `TransientError`."""
 
-    def __init__(self, history: TransientHistory, sweep: int, interval: int, stage: str) -> None:
-        self.history, self.sweep, self.interval, self.stage = history, sweep, interval, stage
-        super().__init__(f"sweep {sweep}, interval {interval}, {stage}: interrupted")
+    history: TransientHistory
+    sweep: int
+    interval: int

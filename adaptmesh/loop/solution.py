@@ -21,43 +21,30 @@ UNNAMED_ERROR = "error"  # the name of an error that is returned as a bare numbe
 
 @dataclass(frozen=True, eq=False)
 class Solution(Value):
-    """What a solve can tell `adapt_loop`, where it is more than its fields.
+    """Result of a solve that returns more than fields.
 
     Parameters
     ----------
     fields : mapping of str to array_like, or array_like
-        Values at the vertices (n,), or (n, k) for k components; fields in P0 or P2 are carried to
-        the next mesh, but cannot steer it.
+        Values at the vertices (n,), or (n, k) for k components; fields in P0 or P2 are transferred
+        to the next mesh, but it is not adapted to them.
     metric : control space, (n, 3) or (n, 2, 2) array_like, optional
-        Where this is given, it steers the mesh, and no field does. It is evaluated at the vertices.
-        The errors of the fields are estimated all the same, to tell when nothing changes any more.
+        Where this is given, the mesh is adapted to it, and to no field. It is evaluated at the
+        vertices. The errors of the fields are estimated all the same, to tell when nothing changes
+        any more.
     errors : mapping of str to float, or float, optional
         The solver's own estimates, in the place of that of the interpolation error.
+
+    Notes
+    -----
+    Those of histories are checked: `fields` is a mapping of str to read-only arrays, `metric` is
+    packed (n, 3) or None, and `errors` is a mapping, empty where the solver gave none.
     """
 
     fields: Any = field(default_factory=dict)
     metric: Any = None
     errors: Any = None
-
-
-@dataclass(frozen=True, eq=False)
-class Solved(Value):
-    """A solution, checked: arrays are copies, and read-only.
-
-    Attributes
-    ----------
-    fields : mapping of str to array
-    is_bare : bool
-        Whether there is one field, and it was returned as an array without a name.
-    metric : (n, 3) array of float, or None
-    errors : mapping of str to float
-        Empty where the solver gave none.
-    """
-
-    fields: Mapping[str, Array]
-    is_bare: bool
-    metric: Floats | None
-    errors: Mapping[str, float]
+    is_bare: bool = field(default=False, repr=False)  # whether `fields` was an array without a name
 
     def as_returned(self, fields: Mapping[str, Array]) -> Any:
         """Fields on another mesh in the form in which the user returned these."""
@@ -66,8 +53,8 @@ class Solved(Value):
         return fields[UNNAMED] if self.is_bare else dict(fields)
 
 
-def as_solved(answer: Any, mesh: Mesh, giver: str = "solve") -> Solved:
-    """What solve, or another function of the user's, returned, in one form.
+def check_solution(answer: Any, mesh: Mesh, function: str = "solve") -> Solution:
+    """What solve, or another function of the user's, returned: checked, in one form.
 
     Raises
     ------
@@ -75,33 +62,33 @@ def as_solved(answer: Any, mesh: Mesh, giver: str = "solve") -> Solved:
         For what is neither fields nor a metric; for fields of another length, or with a value that
         is not finite; for a metric that is not one.
     """
-    given = answer if isinstance(answer, Solution) else _as_solution(answer, mesh, giver)
-    is_bare = not isinstance(given.fields, Mapping)
-    named = {UNNAMED: given.fields} if is_bare else given.fields
-    fields = {str(name): _checked_field(values, name, mesh) for name, values in named.items()}
-    metric = None if given.metric is None else _checked_metric(given.metric, mesh)
+    given = answer if isinstance(answer, Solution) else _as_solution(answer, mesh, function)
+    is_bare = given.is_bare or not isinstance(given.fields, Mapping)
+    named = given.fields if isinstance(given.fields, Mapping) else {UNNAMED: given.fields}
+    fields = {str(name): _check_field(values, name, mesh) for name, values in named.items()}
+    metric = None if given.metric is None else _check_metric(given.metric, mesh)
     if not fields and metric is None:
-        raise TypeError(f"{giver} returned neither fields nor a metric")
-    return Solved(FrozenMapping(fields), is_bare, metric, _checked_errors(given.errors))
+        raise TypeError(f"{function} returned neither fields nor a metric")
+    return Solution(FrozenMapping(fields), metric, _check_errors(given.errors), is_bare)
 
 
-def _as_solution(answer: Any, mesh: Mesh, giver: str) -> Solution:
+def _as_solution(answer: Any, mesh: Mesh, function: str) -> Solution:
     """Mappings and (n,) are fields; control spaces, (n, 3) and (n, 2, 2) are metrics."""
     if isinstance(answer, Mapping):
         return Solution(answer)
     if isinstance(answer, ControlSpace):
         return Solution(metric=answer)
     if answer is None:
-        raise TypeError(f"{giver} returned None; is a return statement missing?")
-    array = _as_array(answer, f"what {giver} returned")
+        raise TypeError(f"{function} returned None; is a return statement missing?")
+    array = _as_array(answer, f"what {function} returned")
     if array.ndim == 1:
         return Solution(array)
     n = len(mesh.points)
     if array.shape in ((n, 3), (n, 2, 2)):
         return Solution(metric=array)
     raise ValueError(
-        f"{giver} returned an array of the shape {array.shape}: values at the {n} vertices ({n},) "
-        f"or a metric ({n}, 3) are wanted; fields with components go into a dict, by name"
+        f"{function} returned an array of the shape {array.shape}: expected values at the {n} "
+        f"vertices ({n},) or a metric ({n}, 3); fields with components go into a dict, by name"
     )
 
 
@@ -114,23 +101,23 @@ def _as_array(values: Any, what: str) -> Array:
         raise TypeError(f"{what} has masked values: fill them, np.ma.filled(values, ...)")
     if array.dtype.kind not in "iufc" or array.ndim == 0:
         kind = type(values).__name__ if array.ndim == 0 else f"an array of {array.dtype}"
-        raise TypeError(f"{what} is {kind}: an array of numbers is wanted")
+        raise TypeError(f"{what}: expected an array of numbers, got {kind}")
     return array
 
 
-def _checked_field(values: Any, name: object, mesh: Mesh) -> Array:
+def _check_field(values: Any, name: object, mesh: Mesh) -> Array:
     if not isinstance(name, str):
-        raise TypeError(f"the names of fields are strings, not {name!r}")
+        raise TypeError(f"the names of fields are strings, got {name!r}")
     label = "the solution" if name == UNNAMED else f"field {name!r}"
     array = _as_array(values, label)
     lengths = sizes(mesh)
     if len(array) not in lengths.values():
         raise ValueError(
-            f"{label} has {len(array)} values: {lengths['P1']} at the vertices are wanted (or "
-            f"{lengths['P0']} of the triangles, or {lengths['P2']} in P2)"
+            f"{label}: expected {lengths['P1']} values at the vertices (or {lengths['P0']} of the "
+            f"triangles, or {lengths['P2']} in P2), got {len(array)}"
         )
     as_field(array, mesh, space_of(array, mesh), label)
-    return _frozen(array)
+    return _read_only_copy(array)
 
 
 def space_of(values: Array, mesh: Mesh) -> str:
@@ -139,31 +126,31 @@ def space_of(values: Array, mesh: Mesh) -> str:
     return "P1" if "P1" in fits else fits[0]
 
 
-def _checked_metric(metric: Any, mesh: Mesh) -> Floats:
+def _check_metric(metric: Any, mesh: Mesh) -> Floats:
     if callable(metric):
-        return _frozen(tensor.pack(metric(mesh.points), points=mesh.points))
+        return _read_only_copy(tensor.pack(metric(mesh.points), points=mesh.points))
     array = _as_array(metric, "the metric")
     n = len(mesh.points)
     if array.shape not in ((n,), (n, 3), (n, 2, 2)):
         raise MetricError(
-            f"the metric has the shape {array.shape}: sizes ({n},), packed tensors ({n}, 3) or "
-            f"matrices ({n}, 2, 2) at the vertices are wanted"
+            f"the metric: expected sizes ({n},), packed tensors ({n}, 3) or matrices ({n}, 2, 2) "
+            f"at the vertices, got an array of the shape {array.shape}"
         )
-    return _frozen(tensor.pack(array, points=mesh.points))
+    return _read_only_copy(tensor.pack(array, points=mesh.points))
 
 
-def _checked_errors(errors: Any) -> Mapping[str, float]:
+def _check_errors(errors: Any) -> Mapping[str, float]:
     if errors is None:
         return FrozenMapping({})
     named = errors if isinstance(errors, Mapping) else {UNNAMED_ERROR: errors}
     out = {str(name): float(value) for name, value in named.items()}
     for name, value in out.items():
         if not 0 <= value < np.inf:
-            raise ValueError(f"the estimate {name!r} must be finite and not negative, not {value}")
+            raise ValueError(f"the estimate {name!r} must be finite and not negative, got {value}")
     return FrozenMapping(out)
 
 
-def _frozen(array: Array) -> Array:
+def _read_only_copy(array: Array) -> Array:
     out = np.array(array, order="C")
     out.flags.writeable = False
     return out

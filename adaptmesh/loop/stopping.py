@@ -9,8 +9,9 @@ import numpy as np
 
 from adaptmesh.checks import expect_number, expect_whole
 
-from .history import History, Iteration
-from .target import Steering
+from .history import History
+from .iteration import Iteration
+from .target import Target
 
 AGREE = 3  # so many iterations in a row that agree are the end
 COARSENED = 1.1  # a mesh with so many times the vertices of another is finer
@@ -21,7 +22,7 @@ UNIFORM = 0.05  # how near to the vertices asked for a mesh of one size is taken
 
 @dataclass(frozen=True)
 class Budget:
-    """What a loop may use; it ends in peace when it is used up.
+    """Limits of a loop; it stops normally when one is reached.
 
     Parameters
     ----------
@@ -67,20 +68,20 @@ class StoppingRule:
             raise ValueError(f"tolerance={self.tolerance!r}: must not be negative")
         expect_whole("max_iterations", self.max_iterations, 0)
 
-    def ended(self, history: History, steering: Steering, elapsed: float) -> History | None:
+    def ended(self, history: History, target: Target, elapsed: float) -> History | None:
         """The history with its end, or None if there is to be another iteration."""
         if not history.for_options:
             return None
-        if self._nothing_to_reduce(history, steering):
+        if self._nothing_to_reduce(history, target):
             return history.ended(
                 "the fields are linear, to rounding: there is no interpolation error to reduce",
                 True,
             )
         if self.agree(history.for_options):
-            short = steering.error is not None and (
-                steering.excess(history[-1].errors) > 1 + self.tolerance
+            short = target.error is not None and (
+                target.excess(history[-1].errors) > 1 + self.tolerance
             )
-            lost = self._lost(history, steering)
+            lost = self._lost(history, target)
             if lost:
                 return history.ended(lost, False)
             if not short:
@@ -98,31 +99,31 @@ class StoppingRule:
             return history.ended(f"the budget of {self.budget.seconds:g} s is used up", False)
         return None
 
-    def _nothing_to_reduce(self, history: History, steering: Steering) -> bool:
-        """Whether linear fields steer, and the mesh has the vertices asked for."""
+    def _nothing_to_reduce(self, history: History, target: Target) -> bool:
+        """Whether the mesh is adapted to linear fields only, and has the vertices asked for."""
         last = history[-1]
         if not last.errors or any(any(it.errors.values()) for it in history.for_options):
             return False
-        if last.snapshot.solved.metric is not None:
+        if last.snapshot.solution.metric is not None:
             return False
-        target = steering.target_vertices
-        return target is None or (
+        count = target.target_vertices
+        return count is None or (
             len(history.for_options) > 1
-            and abs(last.n_points - target) <= max(self.tolerance, UNIFORM) * target
+            and abs(last.n_points - count) <= max(self.tolerance, UNIFORM) * count
         )
 
-    def _lost(self, history: History, steering: Steering) -> str:
+    def _lost(self, history: History, target: Target) -> str:
         """What to say if a feature has fallen between the vertices of a mesh that was coarsened.
 
         Errors grow as a mesh is coarsened. One that is far below what was asked for, and was much
         larger on a finer mesh of this loop, is not small: it is no longer seen.
         """
-        if steering.error is None:
+        if target.error is None:
             return ""
         last = history[-1]
-        now = steering.excess(last.errors)
+        now = target.excess(last.errors)
         finer = [it for it in history.for_options if it.n_points > COARSENED * last.n_points]
-        before = max((steering.excess(it.errors) for it in finer), default=0.0)
+        before = max((target.excess(it.errors) for it in finer), default=0.0)
         if now > FAR_BELOW or before <= LOST * now:
             return ""
         return (
@@ -132,7 +133,7 @@ class StoppingRule:
         )
 
     def agree(self, iterations: Sequence[Iteration]) -> bool:
-        """Whether counts and errors of the last meshes are all but the same."""
+        """Whether counts and errors of the last meshes agree within the tolerance."""
         last = iterations[-AGREE:]
         if len(last) < AGREE or any(it.errors.keys() != last[0].errors.keys() for it in last):
             return False

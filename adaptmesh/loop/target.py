@@ -1,9 +1,9 @@
-"""From what was solved to the metric for the next mesh: how many vertices, and where."""
+"""From a solution to the metric for the next mesh: how many vertices, and where."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,40 +11,30 @@ from adaptmesh.checks import expect_number
 from adaptmesh.errors import MetricError
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.types import Array, Floats
-from metrics import Curvature, Limits, normalised
-from metrics.from_solution.normalise import check_combination, check_norm
+from metrics import Curvature, normalised
 from metrics.from_solution.optimal_metric import optimal_tensors
-from metrics.from_solution.recovery import check_method
-from metrics.measure.nodal import vertices_of
-from metrics.topology import border_edges
 
+from .chosen_fields import check_scale, choose_fields, is_constant, is_usable
 from .error_control import next_count
-from .history import Iteration
-from .solution import Solved, space_of
+from .iteration import Iteration
+from .metric_options import MetricOptions
+from .solution import Solution
+from .vertex_count import check_count, min_vertices
 
 # Meshes come within a few per cent of the number of vertices predicted, and a budget is not
 # exceeded: this much of it is asked for.
 SHARE_OF_BUDGET = 0.95
 
-SCALES = (1e-100, 1e100)  # of fields; squares of their derivatives are to be numbers
 
-
-@dataclass(frozen=True)
-class Steering:
-    """What the meshes are made for.
+@dataclass(frozen=True, kw_only=True)
+class Target(MetricOptions):
+    """What the meshes are made for; see also `MetricOptions`.
 
     Attributes
     ----------
     target_vertices : float or None
     error : float, mapping of str to float, or None
         Asked for, of every field, or by its name.
-    p : float
-        Of the norm of the interpolation error.
-    fields : sequence of str or None
-        Those that steer the mesh; None for all real ones that are given at the vertices.
-    limits : Limits
-    recovery, combine : str
-        As for `metrics.metric_from_solution`.
     growth : float
         Bound on the ratio of the numbers of vertices of a mesh and the next.
     order : float
@@ -54,30 +44,18 @@ class Steering:
 
     target_vertices: float | None = None
     error: float | Mapping[str, float] | None = None
-    p: float = 2.0
-    fields: Sequence[str] | None = None
-    limits: Limits = field(default_factory=Limits)
-    recovery: str = "green"
-    combine: str = "intersection"
     growth: float = 4.0
     order: float = 1.0
     max_vertices: int = 5_000_000
 
-    @property
-    def asked_for(self) -> list[str]:
-        """The options that decide what the mesh is to be; the others only how it is reached."""
-        return [name for name in vars(self) if name not in ("growth", "order", "max_vertices")]
-
     def __post_init__(self) -> None:
-        for name in ("p", "growth", "order"):
+        super().__post_init__()
+        for name in ("growth", "order"):
             expect_number(name, getattr(self, name))
-        check_norm(self.p)
-        check_method(self.recovery)
-        check_combination(self.combine)
         if self.target_vertices is not None and self.error is not None:
             raise ValueError("give one target: target_vertices or error")
         if self.target_vertices is not None:
-            check_target(self.target_vertices)
+            check_count(self.target_vertices)
         if self.target_vertices is not None and self.target_vertices > self.max_vertices:
             raise ValueError(
                 f"target_vertices={self.target_vertices!r} is more than the budget of "
@@ -85,24 +63,28 @@ class Steering:
             )
         if self.error is not None:
             _check_errors(self.error)
-        check_fields(self.fields)
         if not self.growth > 1:
             raise ValueError(f"growth={self.growth!r}: must be more than 1")
         if not self.order > 0:
             raise ValueError(f"order={self.order!r}: must be positive")
 
+    def asks_for_the_same(self, options: Mapping[str, str], others: Mapping[str, str]) -> bool:
+        """Whether two targets, as text, make the same mesh, however it is reached."""
+        names = vars(self).keys() - {"growth", "order", "max_vertices"}
+        return all(options.get(name) == others.get(name) for name in names)
+
     def metric(
-        self, mesh: Mesh, solved: Solved, earlier: Sequence[Iteration] = ()
+        self, mesh: Mesh, solution: Solution, earlier: Sequence[Iteration] = ()
     ) -> tuple[Floats, dict[str, float]]:
         """The metric (n, 3) at the vertices for the next mesh, and the errors on this one.
 
         `earlier` are the iterations before, made for the same options.
         """
-        if solved.metric is None:
-            return self._recovered(mesh, solved, earlier)
-        count = self._count(mesh, solved.errors, earlier)
-        errors = dict(solved.errors) or self._watched(mesh, solved)
-        metric = solved.metric
+        if solution.metric is None:
+            return self._from_fields(mesh, solution, earlier)
+        count = self._count(mesh, solution.errors, earlier)
+        errors = dict(solution.errors) or self._monitored(mesh, solution)
+        metric = solution.metric
         if count is None:
             metric = self.limits.applied(metric, mesh.points, mesh.triangles)
         else:
@@ -119,24 +101,24 @@ class Steering:
                 "an error was asked for, but solve gave a metric and no estimate of its own: "
                 "return adaptmesh.Solution(metric=..., errors=...), or give target_vertices"
             )
-        return max(value / self._wanted(name) for name, value in errors.items())
+        return max(value / self._error_for(name) for name, value in errors.items())
 
-    def _recovered(
-        self, mesh: Mesh, solved: Solved, earlier: Sequence[Iteration]
+    def _from_fields(
+        self, mesh: Mesh, solution: Solution, earlier: Sequence[Iteration]
     ) -> tuple[Floats, dict[str, float]]:
         points, triangles = mesh.points, mesh.triangles
-        curvatures = self._curvatures(mesh, self._varying_fields(mesh, solved))
-        errors = dict(solved.errors) or self._estimates(curvatures)
+        curvatures = self.curvatures(mesh, self._varying_fields(mesh, solution))
+        errors = dict(solution.errors) or self._estimates(curvatures)
         bent = {name: c for name, c in curvatures.items() if not c.is_flat}
         shares = None
-        if self.error is not None and not solved.errors:
-            shares = [self._wanted(name) for name in bent]
-        self._refuse_unknown(errors, solved)
+        if self.error is not None and not solution.errors:
+            shares = [self._error_for(name) for name in bent]
+        self._check_names_of_errors(errors, solution)
         count = self._count(mesh, errors, earlier)
         if count is None:
             raise MetricError(
                 "neither target_vertices nor error is given, and solve returned no metric: "
-                "there is nothing that says how fine the mesh is to be"
+                "there is nothing that says how fine the mesh should be"
             )
         if not bent:
             uniform = np.tile([1.0, 0.0, 1.0], (len(points), 1))
@@ -156,26 +138,20 @@ class Steering:
         )
         return metric, errors
 
-    def _watched(self, mesh: Mesh, solved: Solved) -> dict[str, float]:
-        """Errors of fields that do not steer, as there is a metric: they tell when all is settled.
+    def _monitored(self, mesh: Mesh, solution: Solution) -> dict[str, float]:
+        """Errors of fields beside a metric, to which the mesh is adapted: they tell convergence.
 
-        The number of vertices, which is asked for, is what it is long before.
+        The number of vertices, which is asked for, is met long before.
         """
         fields = {
             name: values
-            for name, values in solved.fields.items()
-            if _can_steer(values, mesh) and not is_constant(values)
+            for name, values in solution.fields.items()
+            if is_usable(values, mesh) and not is_constant(values)
         }
         try:
-            return self._estimates(self._curvatures(mesh, fields))
+            return self._estimates(self.curvatures(mesh, fields))
         except MetricError:  # on a mesh that is too coarse for derivatives there is nothing to tell
             return {}
-
-    def _curvatures(self, mesh: Mesh, fields: Mapping[str, Array]) -> dict[str, Curvature]:
-        return {
-            name: Curvature.of(mesh.points, mesh.triangles, values, self.recovery)
-            for name, values in fields.items()
-        }
 
     def _estimates(self, curvatures: Mapping[str, Curvature]) -> dict[str, float]:
         """The interpolation error of each field; 0 of one that is linear to rounding."""
@@ -184,26 +160,25 @@ class Steering:
             for name, c in curvatures.items()
         }
 
-    def _varying_fields(self, mesh: Mesh, solved: Solved) -> dict[str, Array]:
-        """The fields that steer and are not the same everywhere, (n, k)."""
-        chosen = steering_fields(self.fields, solved.fields, mesh)
+    def _varying_fields(self, mesh: Mesh, solution: Solution) -> dict[str, Array]:
+        """The fields to adapt to that are not the same everywhere, (n, k)."""
+        chosen = choose_fields(self.fields, solution.fields, mesh)
         varying = {n: v.reshape(len(v), -1) for n, v in chosen.items() if not is_constant(v)}
         for name, values in varying.items():
-            refuse_beyond_range(name, values)
+            check_scale(name, values)
         if not varying:
             raise MetricError(
-                f"no field asks for any size: {', '.join(map(repr, chosen))} "
+                f"the fields say nothing about sizes: {', '.join(map(repr, chosen))} "
                 f"{'are' if len(chosen) > 1 else 'is'} the same everywhere"
             )
         return varying
 
-    def _refuse_unknown(self, errors: Mapping[str, float], solved: Solved) -> None:
-        known = dict.fromkeys([*solved.fields, *errors])
+    def _check_names_of_errors(self, errors: Mapping[str, float], solution: Solution) -> None:
+        known = dict.fromkeys([*solution.fields, *errors])
         for name in self.error if isinstance(self.error, Mapping) else ():
             if name not in known:
                 raise MetricError(
-                    f"error asks for something of {name!r}, but solve gave "
-                    f"{', '.join(map(repr, known))}"
+                    f"error has a value for {name!r}, but solve gave {', '.join(map(repr, known))}"
                 )
 
     def _count(
@@ -211,93 +186,29 @@ class Steering:
     ) -> float | None:
         """How many vertices the next mesh is to have; None if only a metric can say.
 
-        What is on the way to the number wanted, or comes of an error that even the coarsest mesh
-        has, is at least that of the coarsest mesh.
+        At least that of the coarsest mesh, as on the way to the target, and where even the
+        coarsest mesh has the error asked for.
         """
         n_points = len(mesh.points)
         if self.error is not None:
             counts = [*(it.n_points for it in earlier), n_points]
             excesses = [*(self.excess(it.errors) for it in earlier), self.excess(errors)]
-            wanted = next_count(counts, excesses, self.order, self.growth)
-            wanted = min(wanted, SHARE_OF_BUDGET * self.max_vertices)
+            count = next_count(counts, excesses, self.order, self.growth)
+            count = min(count, SHARE_OF_BUDGET * self.max_vertices)
         elif self.target_vertices is not None:
-            wanted = self.target_vertices
+            count = self.target_vertices
         else:
             return None
-        wanted = min(max(wanted, n_points / self.growth), n_points * self.growth)
-        return max(3.0, wanted, fewest_vertices(mesh, self.limits.h_max))
+        count = min(max(count, n_points / self.growth), n_points * self.growth)
+        return max(3.0, count, min_vertices(mesh, self.limits.h_max))
 
-    def _wanted(self, name: str) -> float:
+    def _error_for(self, name: str) -> float:
         if not isinstance(self.error, Mapping):
             assert self.error is not None
             return float(self.error)
         if name not in self.error:
-            raise MetricError(f"error gives nothing for {name!r}: give a value, or name `fields`")
+            raise MetricError(f"error has no value for {name!r}: give one, or name `fields`")
         return float(self.error[name])
-
-
-def steering_fields(
-    names: Sequence[str] | None, fields: Mapping[str, Array], mesh: Mesh
-) -> dict[str, Array]:
-    """The fields of these names, or else all that can steer: real ones at the vertices."""
-    if names is None:
-        chosen = {name: values for name, values in fields.items() if _can_steer(values, mesh)}
-        if not chosen:
-            raise MetricError(
-                "no field can steer: real values at the vertices are needed; there "
-                f"{'are' if fields else 'is'} {', '.join(map(repr, fields)) or 'none'}"
-            )
-        return chosen
-    for name in names:
-        if name not in fields:
-            known = ", ".join(map(repr, fields)) or "none"
-            raise MetricError(f"there is no field {name!r} to steer by; solve gave {known}")
-        if not _can_steer(fields[name], mesh):
-            raise MetricError(
-                f"field {name!r} cannot steer: real values at the vertices are needed"
-            )
-    return {name: fields[name] for name in names}
-
-
-def refuse_beyond_range(name: str, values: Array) -> None:
-    """Refuse a field of which the derivatives are no numbers any more."""
-    largest = float(np.abs(values).max())
-    if not SCALES[0] <= largest <= SCALES[1]:
-        raise MetricError(
-            f"field {name!r} has values up to {largest:.3g}: choose a unit in which they are "
-            f"between {SCALES[0]:g} and {SCALES[1]:g}"
-        )
-
-
-def fewest_vertices(mesh: Mesh, h_max: float) -> float:
-    """About how many vertices a mesh has in which all sizes are the largest allowed."""
-    if h_max == np.inf:
-        return 3.0
-    ends = mesh.points[border_edges(mesh.triangles)]
-    border = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum()
-    return vertices_of(mesh.areas.sum() / h_max**2, border / h_max)
-
-
-def check_reachable(target_vertices: float, mesh: Mesh, h_max: float) -> None:
-    """Refuse a number of vertices that is less than the coarsest mesh has."""
-    fewest = fewest_vertices(mesh, h_max)
-    if target_vertices < fewest:
-        raise ValueError(
-            f"target_vertices={target_vertices!r}: with all sizes h_max = {h_max:.6g} a mesh has "
-            f"about {fewest:.0f}; raise h_max, or ask for more"
-        )
-
-
-def is_constant(values: Array) -> bool:
-    """Whether a field, and each of its components, is the same everywhere."""
-    return not np.ptp(values.reshape(len(values), -1), axis=0).any()
-
-
-def check_target(vertices: float) -> None:
-    """Refuse a number of vertices of which no mesh can be."""
-    expect_number("target_vertices", vertices)
-    if not 3 <= vertices < np.inf:
-        raise ValueError(f"target_vertices={vertices!r}: a number, at least 3, is needed")
 
 
 def _check_errors(error: float | Mapping[str, float]) -> None:
@@ -307,19 +218,7 @@ def _check_errors(error: float | Mapping[str, float]) -> None:
         if not 0 < value < np.inf:
             raise ValueError(f"{label}={value!r}: must be positive, and finite")
     if isinstance(error, Mapping) and not error:
-        raise ValueError("error={}: give the error wanted of each field, by name")
-
-
-def check_fields(names: Sequence[str] | None) -> None:
-    """Refuse a name where a list of names is wanted, and none at all."""
-    if isinstance(names, str):
-        raise TypeError(f"fields={names!r}: give a list of names, [{names!r}]")
-    if names is not None and not names:
-        raise ValueError("fields=[]: give the names of those that steer the mesh, or leave it out")
-
-
-def _can_steer(values: Array, mesh: Mesh) -> bool:
-    return values.dtype.kind != "c" and space_of(values, mesh) == "P1"
+        raise ValueError("error={}: give the error of each field, by name")
 
 
 def norm(errors: Floats, p: float) -> float:

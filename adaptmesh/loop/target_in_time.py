@@ -18,19 +18,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh.checks import expect_number
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.types import Floats
-from metrics import Background, Curvature, Limits, absolute, combined
-from metrics.from_solution.normalise import check_combination, check_norm
+from metrics import Background, absolute, combined
 from metrics.from_solution.optimal_metric import optimal_tensors
-from metrics.from_solution.recovery import check_method, largest_magnitude
+from metrics.from_solution.recovery import largest_magnitude
 from metrics.measure.nodal import predicted_vertices
 
-from .target import check_fields, check_target, is_constant, refuse_beyond_range, steering_fields
+from .chosen_fields import check_scale, choose_fields, is_constant
+from .metric_options import MetricOptions
+from .vertex_count import check_count
 
 Hessians = Mapping[str, Floats]
-"""The absolute Hessian (n, 3) of each field that steers."""
+"""The absolute Hessian (n, 3) of each field that the meshes are adapted to."""
 
 IN_TIME = ("average", "intersection")
 PRECISION = 1e-3  # of the mean number of vertices predicted
@@ -38,39 +38,29 @@ TRIALS = 8
 FLATNESS = 1e-8  # curvature below this share of the largest is not told from none
 
 
-@dataclass(frozen=True)
-class SteeringInTime:
-    """What the meshes of all intervals are made for; see `transient_loop`."""
+@dataclass(frozen=True, kw_only=True)
+class TargetInTime(MetricOptions):
+    """What the meshes of all intervals are made for; see `transient_loop` and `MetricOptions`."""
 
     target_vertices: float
-    p: float
-    fields: Sequence[str] | None
-    limits: Limits
-    recovery: str
-    combine: str
-    in_time: str
+    in_time: str = "average"
 
     def __post_init__(self) -> None:
-        expect_number("p", self.p)
-        check_norm(self.p)
-        check_method(self.recovery)
-        check_combination(self.combine)
-        check_target(self.target_vertices)
-        check_fields(self.fields)
+        super().__post_init__()
+        check_count(self.target_vertices)
         if self.in_time not in IN_TIME:
             raise ValueError(f"in_time={self.in_time!r} is none of {', '.join(map(repr, IN_TIME))}")
 
     def hessians(self, mesh: Mesh, fields: Mapping[str, NDArray[Any]]) -> Hessians:
         """At one time; zero where a field is the same everywhere, as before anything happens."""
-        out = {}
-        for name, values in steering_fields(self.fields, fields, mesh).items():
-            if is_constant(values):
-                out[name] = np.zeros((len(values), 3))
-                continue
-            refuse_beyond_range(name, values)
-            curvature = Curvature.of(mesh.points, mesh.triangles, values, self.recovery)
-            out[name] = curvature.absolute
-        return out
+        chosen = choose_fields(self.fields, fields, mesh)
+        varying = {name: v for name, v in chosen.items() if not is_constant(v)}
+        for name, values in varying.items():
+            check_scale(name, values)
+        hessians = {name: c.absolute for name, c in self.curvatures(mesh, varying).items()}
+        return {
+            n: hessians[n] if n in hessians else np.zeros((len(v), 3)) for n, v in chosen.items()
+        }
 
     def over_time(self, times: Floats, samples: Sequence[Hessians]) -> Hessians:
         """One Hessian of each field for an interval: the mean by trapezoids, or the finest."""

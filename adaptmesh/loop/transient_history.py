@@ -2,59 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.types import Floats
-from adaptmesh.value import Value
+from adaptmesh.domain.domain import Domain
+from adaptmesh.errors import FormatError
+from adaptmesh.files.notes import Notes
 
-from .history import PathLike, Seconds
-
-if TYPE_CHECKING:
-    from adaptmesh.domain.domain import Domain
-
-Fields = Mapping[str, NDArray[Any]]
+from .archive import damage_named, read_interval, write_interval
+from .base_history import BaseHistory
+from .records import Interval, Seconds
 
 
 @dataclass(frozen=True, eq=False)
-class Interval(Value):
-    """What happened on one mesh.
-
-    Attributes
-    ----------
-    start, end : float
-        Of the interval.
-    mesh : Mesh
-    first, last : mapping of str to array
-        The fields at its start, as they were carried there, and at its end.
-    times : (k,) array
-        Of the samples from which the metric was made.
-    hessians : mapping of str to (n, 3) array
-        Over the interval, of each field that steers, at the vertices: the next sweep is made for
-        these.
-    seconds : Seconds
-        Wall-clock time; `solve` is that in `initial` and `advance`.
-    """
-
-    start: float
-    end: float
-    mesh: Mesh
-    first: Fields = field(repr=False)
-    last: Fields = field(repr=False)
-    times: Floats = field(repr=False)
-    hessians: Fields = field(repr=False)
-    seconds: Seconds
-    is_bare: bool = field(repr=False)  # whether `advance` is given an array and not a dict
-
-
-@dataclass(frozen=True, eq=False)
-class TransientHistory(Value):
+class TransientHistory(BaseHistory):
     """The intervals of each sweep; print it.
 
     Attributes
@@ -65,8 +30,16 @@ class TransientHistory(Value):
         What the meshes were made for, as text.
     """
 
+    LIST: ClassVar[str] = "transient.json"
+    KIND: ClassVar[str] = "history in time"
+
     sweeps: tuple[tuple[Interval, ...], ...] = ()
     options: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def records(self) -> Sequence[Interval]:
+        """The intervals of all sweeps, in order."""
+        return tuple(interval for sweep in self.sweeps for interval in sweep)
 
     @property
     def intervals(self) -> tuple[Interval, ...]:
@@ -84,53 +57,12 @@ class TransientHistory(Value):
         weights = [i.end - i.start for i in intervals]
         return float(np.average([len(i.mesh.points) for i in intervals], weights=weights))
 
-    @property
-    def seconds(self) -> Seconds:
-        """Of all intervals of all sweeps together."""
-        return sum((i.seconds for sweep in self.sweeps for i in sweep), Seconds())
-
-    def save(self, folder: PathLike) -> None:
-        """Write everything into a folder, as ``transient_loop(..., save=folder)`` does on its way.
-
-        Parameters
-        ----------
-        folder : path
-            Made if it does not exist. A history that is there is replaced.
-
-        Raises
-        ------
-        FormatError
-            It cannot be written.
-        """
-        from .transient_files import save
-
-        save(self, Path(folder))
-
-    @classmethod
-    def load(cls, folder: PathLike, domain: Domain | None = None) -> TransientHistory:
-        """Read what `save`, or ``transient_loop(..., save=folder)``, has written.
-
-        Parameters
-        ----------
-        folder : path
-        domain : Domain, optional
-            What was meshed: domains are not saved. Meshes come without one if it is not given.
-
-        Raises
-        ------
-        FormatError
-            There is no history, or it is damaged.
-        """
-        from .transient_files import load
-
-        return load(Path(folder), domain)
-
     def __repr__(self) -> str:
         counts = [len(sweep) for sweep in self.sweeps]
         return f"<TransientHistory: {len(counts)} sweeps of {max(counts, default=0)} intervals>"
 
     def __str__(self) -> str:
-        lines = ["sweep  vertices, averaged over time    least     most  seconds  in adaptmesh"]
+        lines = ["sweep  vertices, averaged over time      min      max  seconds  in adaptmesh"]
         for k, sweep in enumerate(self.sweeps):
             counts = [len(i.mesh.points) for i in sweep]
             spent = sum((i.seconds for i in sweep), Seconds())
@@ -139,3 +71,36 @@ class TransientHistory(Value):
                 f"{spent.total:8.1f} {spent.share_of_library:13.0%}"
             )
         return "\n".join(lines)
+
+    def _write_record(self, number: int, folder: Path) -> None:
+        names = [_file_name(k, i) for k, sweep in enumerate(self.sweeps) for i in range(len(sweep))]
+        write_interval(folder / names[number], self.records[number])
+
+    def _list(self) -> dict[str, Any]:
+        return {"options": dict(self.options), "intervals": [len(sweep) for sweep in self.sweeps]}
+
+    @classmethod
+    def _of_list(cls, content: Notes, path: Path, domain: Domain | None) -> TransientHistory:
+        with damage_named(path):
+            counts = content.counts("intervals")
+            if 0 in counts:
+                raise FormatError(f"sweep {counts.index(0)} has no intervals")
+            options = content.texts("options") if "options" in content else {}
+        sweeps = [_existing_files(path, sweep, count) for sweep, count in enumerate(counts)]
+        return cls(
+            tuple(tuple(read_interval(p, domain) for p in sweep) for sweep in sweeps), options
+        )
+
+
+def _existing_files(path: Path, sweep: int, count: int) -> list[Path]:
+    """The files of a sweep; a `FormatError` that names the first one missing."""
+    out: list[Path] = []
+    while len(out) < count:
+        out.append(path.parent / _file_name(sweep, len(out)))
+        if not out[-1].exists():
+            raise FormatError(f"{path}: {out[-1].name} is missing")
+    return out
+
+
+def _file_name(sweep: int, number: int) -> str:
+    return f"sweep_{sweep:02d}_interval_{number:04d}.npz"

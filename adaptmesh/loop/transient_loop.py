@@ -18,9 +18,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,22 +27,27 @@ from numpy.typing import ArrayLike
 from adaptmesh.adapt.adapt import adapt
 from adaptmesh.checks import expect_function, expect_whole
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.transfer.transfer import METHODS
-from adaptmesh.transfer.transfer import transfer as transferred
+from adaptmesh.transfer.transfer import transfer as transfer_fields
 from adaptmesh.types import Floats
 from adaptmesh.value import FrozenMapping
 from metrics import Background, Limits
 
-from . import transient_files as files
-from .adapt_loop import Clock, largest_size, refuse_other_mesh, with_domain
+from .base_history import PathLike
 from .errors import TransientError, TransientInterrupted
-from .history import PathLike
-from .history_files import refuse_history
-from .option_text import option_as_text
-from .solution import Solved, as_solved, space_of
-from .target import check_reachable
-from .target_in_time import SteeringInTime
-from .transient_history import Interval, TransientHistory
+from .records import Interval
+from .resume import (
+    check_transfer,
+    default_h_max,
+    load_earlier,
+    options_as_text,
+    prepare_folder,
+    with_domain,
+)
+from .solution import Solution, check_solution, space_of
+from .step import Step
+from .target_in_time import TargetInTime
+from .transient_history import TransientHistory
+from .vertex_count import check_reachable
 
 ROUNDING = 1e-9
 """Share of an interval by which the last time may miss its end, as sums of steps do."""
@@ -94,13 +97,13 @@ def transient_loop(
     sweeps : int, optional
         How often all intervals are gone through, at least once.
     fields : sequence of str, optional
-        Those that steer the meshes; by default all that are real and at the vertices.
+        Those that the meshes are adapted to; by default all that are real and at the vertices.
     p : float, optional
         Of the norm, in space and time.
     in_time : {"average", "intersection"}, optional
         How the absolute Hessians at the samples of an interval are put together: their mean over
-        time, which is the least error for so many vertices; or the finest in every direction, which
-        holds the error at every moment.
+        time, which minimises the error for so many vertices; or the finest in every direction,
+        which holds the error at every moment.
     h_min, h_max, max_anisotropy, gradation, recovery, combine : optional
         As for `adapt_loop`.
     transfer : {"conservative", "interpolation"}, optional
@@ -135,8 +138,8 @@ def transient_loop(
     Notes
     -----
     If every time step costs what its mesh has vertices, and steps are equally long in all
-    intervals, the least error in L^p over space and time has the same factor before the L^p metric
-    of every interval. So intervals in which more happens get more vertices.
+    intervals, the minimal error in L^p over space and time has the same factor before the L^p
+    metric of every interval. So intervals in which more happens get more vertices.
 
     References
     ----------
@@ -147,43 +150,50 @@ def transient_loop(
     Belme, Dervieux, Alauzet: Time accurate anisotropic goal-oriented mesh adaptation for unsteady
     flows. Journal of Computational Physics 231 (2012), 6323-6348: global, with averages in time.
     """
-    ends = _checked_times(times)
+    ends = _check_times(times)
     n, lengths = len(ends) - 1, np.diff(ends)
     expect_whole("sweeps", sweeps, 1)
     expect_function("callback", callback)
     mesh = with_domain(mesh)
     limits = Limits(
-        h_min, largest_size(mesh) if h_max is None else h_max, max_anisotropy, gradation
+        h_min, default_h_max(mesh) if h_max is None else h_max, max_anisotropy, gradation
     )
-    steering = SteeringInTime(target_vertices, p, fields, limits, recovery, combine, in_time)
+    target = TargetInTime(
+        target_vertices=target_vertices,
+        p=p,
+        fields=fields,
+        limits=limits,
+        recovery=recovery,
+        combine=combine,
+        in_time=in_time,
+    )
     check_reachable(target_vertices, mesh, limits.h_max)
     solver = _Solver(initial, advance, transfer, keep_bounds)
-    history = _resumed(resume, mesh, ends, steering)
-    folder = _begun(save, history, resume)
+    history = _resumed(resume, mesh, ends, target)
+    folder = prepare_folder(save, history, resume)
     fitted: list[Background] = []
-    for place in range(sum(map(len, history.sweeps)), int(sweeps) * n):
-        sweep, number = divmod(place, n)
-        clock = Clock()
-        with _explained(history, sweep, number, clock):
+    for done in range(len(history.records), int(sweeps) * n):
+        sweep, number = divmod(done, n)
+        position = {"sweep": sweep, "interval": number}
+        with Step(history, TransientError, TransientInterrupted, "metric", **position) as step:
             here = mesh
             if sweep:
                 before = history.sweeps[sweep - 1]
                 if number == 0 or not fitted:
-                    with clock.of("metric"):
-                        fitted = steering.metrics(
+                    with step.timed("metric"):
+                        fitted = target.metrics(
                             [i.mesh for i in before], [i.hessians for i in before], lengths
                         )
-                with clock.of("adapt"):
+                with step.timed("adapt"):
                     here = adapt(before[number].mesh, fitted[number])
-            first = solver.first(here, history.intervals[-1] if number else None, clock)
-            interval = solver.advanced(here, first, ends[number : number + 2], steering, clock)
-            history = history.with_interval(interval, sweep)
-        with _explained(history, sweep, number, clock):
+            first = solver.first(here, history.intervals[-1] if number else None, step)
+            interval = solver.advanced(here, first, ends[number : number + 2], target, step)
+            step.history = history = history.with_interval(interval, sweep)
             if folder is not None:
-                clock.stage = "save"
-                files.append(history, folder)
+                step.stage = "save"
+                history.append(folder)
             if callback is not None:
-                clock.stage = "callback"
+                step.stage = "callback"
                 callback(sweep, number, interval)
     return history
 
@@ -201,17 +211,16 @@ class _Solver:
         for name in ("initial", "advance"):
             if not callable(getattr(self, name)):
                 kind = type(getattr(self, name)).__name__
-                raise TypeError(f"{name} must be a function, not {kind}")
-        if self.method not in METHODS:
-            raise ValueError(f"transfer={self.method!r} is none of {', '.join(map(repr, METHODS))}")
+                raise TypeError(f"{name} must be a function, got {kind}")
+        check_transfer(self.method)
 
-    def first(self, mesh: Mesh, before: Interval | None, clock: Clock) -> Solved:
+    def first(self, mesh: Mesh, before: Interval | None, step: Step[TransientHistory]) -> Solution:
         """The fields at the start of an interval: the initial ones, or those of the one before."""
         if before is None:
-            with clock.of("solve", "initial"):
+            with step.timed("solve", "initial"):
                 return _fields_of(self.initial(mesh), mesh, "initial")
-        with clock.of("transfer"):
-            carried = transferred(
+        with step.timed("transfer"):
+            there = transfer_fields(
                 before.last,
                 before.mesh,
                 mesh,
@@ -219,32 +228,37 @@ class _Solver:
                 space={name: space_of(values, before.mesh) for name, values in before.last.items()},
                 keep_bounds=self.keep_bounds,
             )
-            return replace(as_solved(carried, mesh), is_bare=before.is_bare)
+            return replace(check_solution(there, mesh), is_bare=before.is_bare)
 
     def advanced(
-        self, mesh: Mesh, first: Solved, ends: Floats, steering: SteeringInTime, clock: Clock
+        self,
+        mesh: Mesh,
+        first: Solution,
+        ends: Floats,
+        target: TargetInTime,
+        step: Step[TransientHistory],
     ) -> Interval:
         """Go through an interval."""
-        with clock.of("metric"):
-            times, hessians = [float(ends[0])], [steering.hessians(mesh, first.fields)]
+        with step.timed("metric"):
+            times, hessians = [float(ends[0])], [target.hessians(mesh, first.fields)]
         last = first
-        for t, given in self.samples(mesh, first, float(ends[0]), float(ends[1]), clock):
+        for t, given in self.samples(mesh, first, float(ends[0]), float(ends[1]), step):
             last = _fields_of(given, mesh, "advance")
             if last.fields.keys() != first.fields.keys():
                 raise ValueError(
                     f"advance gave {_names(last)} at t = {t:g}, but began with {_names(first)}: "
                     "fields keep their names"
                 )
-            with clock.of("metric"):
+            with step.timed("metric"):
                 times.append(t)
-                hessians.append(steering.hessians(mesh, last.fields))
-        clock.stage = "advance"
+                hessians.append(target.hessians(mesh, last.fields))
+        step.stage = "advance"
         if times[-1] != ends[1]:
             raise ValueError(
                 f"advance stopped at t = {times[-1]:g}; the interval ends at {ends[1]:g}"
             )
-        with clock.of("metric"):
-            over_time = steering.over_time(np.array(times), hessians)
+        with step.timed("metric"):
+            over_time = target.over_time(np.array(times), hessians)
         return Interval(
             start=times[0],
             end=times[-1],
@@ -253,29 +267,29 @@ class _Solver:
             last=last.fields,
             times=np.array(times),
             hessians=FrozenMapping(dict(over_time)),
-            seconds=clock.seconds,
+            seconds=step.seconds,
             is_bare=first.is_bare,
         )
 
     def samples(
-        self, mesh: Mesh, first: Solved, t0: float, t1: float, clock: Clock
+        self, mesh: Mesh, first: Solution, t0: float, t1: float, step: Step[TransientHistory]
     ) -> Iterator[tuple[float, Any]]:
         """What advance yields, or the fields at the end if it returns these."""
-        with clock.of("solve", "advance"):
+        with step.timed("solve", "advance"):
             answer = self.advance(mesh, first.as_returned(first.fields), t0, t1)
         if not isinstance(answer, Iterator):
             yield t1, answer
             return
         before = t0
         while True:
-            with clock.of("solve", "advance"):
+            with step.timed("solve", "advance"):
                 sample = next(answer, None)
             if sample is None:
                 return
             if not isinstance(sample, tuple) or len(sample) != 2:
                 raise TypeError(
-                    f"advance yielded {type(sample).__name__}: a time and the fields then, "
-                    "`yield t, fields`, are wanted"
+                    "expected a time and the fields then, `yield t, fields`: advance yielded "
+                    f"{type(sample).__name__}"
                 )
             t = float(sample[0])
             if abs(t - t1) <= ROUNDING * (t1 - t0):
@@ -286,20 +300,20 @@ class _Solver:
             yield t, sample[1]
 
 
-def _fields_of(answer: Any, mesh: Mesh, giver: str) -> Solved:
-    solved = as_solved(answer, mesh, giver)
-    if solved.metric is not None or solved.errors:
+def _fields_of(answer: Any, mesh: Mesh, function: str) -> Solution:
+    solution = check_solution(answer, mesh, function)
+    if solution.metric is not None or solution.errors:
         raise TypeError(
-            f"{giver} returned a metric or errors: in time only fields can steer the meshes"
+            f"{function} returned a metric or errors: in time meshes are adapted to fields only"
         )
-    return solved
+    return solution
 
 
-def _names(solved: Solved) -> str:
-    return ", ".join(map(repr, solved.fields))
+def _names(solution: Solution) -> str:
+    return ", ".join(map(repr, solution.fields))
 
 
-def _checked_times(times: ArrayLike) -> Floats:
+def _check_times(times: ArrayLike) -> Floats:
     ends = np.asarray(times, np.float64)
     if ends.ndim != 1 or len(ends) < 2 or not np.isfinite(ends).all() or (np.diff(ends) <= 0).any():
         raise ValueError("times must be two or more finite numbers, ascending")
@@ -307,21 +321,11 @@ def _checked_times(times: ArrayLike) -> Floats:
 
 
 def _resumed(
-    resume: TransientHistory | PathLike | None,
-    mesh: Mesh,
-    ends: Floats,
-    steering: SteeringInTime,
+    resume: TransientHistory | PathLike | None, mesh: Mesh, ends: Floats, target: TargetInTime
 ) -> TransientHistory:
     """The history to go on with: empty, or an earlier one of this mesh, times and options."""
-    options = {
-        name: option_as_text(value) for name, value in vars(steering).items() if value is not None
-    }
-    if resume is None:
-        return TransientHistory(options=options)
-    if isinstance(resume, TransientHistory):
-        history = resume
-    else:
-        history = TransientHistory.load(resume, mesh.domain)
+    options = options_as_text(target)
+    history = load_earlier(resume, TransientHistory, mesh)
     whole = list(itertools.pairwise(ends.tolist()))
     for k, sweep in enumerate(history.sweeps):
         had = [(i.start, i.end) for i in sweep]
@@ -331,44 +335,16 @@ def _resumed(
                 f"{had[-1][1]:g} in sweep {k}, which are not those of times: give the same"
             )
     if history.sweeps:
-        refuse_other_mesh(history.sweeps[0][0].mesh, mesh)
-        _refuse_other_options(history.options, options)
+        _check_same_options(history.options, options)
     return history if history.options == options else replace(history, options=options)
 
 
-def _refuse_other_options(earlier: Mapping[str, str], now: Mapping[str, str]) -> None:
-    """Refuse to go on with meshes that were made for something else."""
+def _check_same_options(earlier: Mapping[str, str], now: Mapping[str, str]) -> None:
+    """Raise rather than go on with meshes that were made for something else."""
     for name in sorted({*earlier, *now} if earlier else ()):
-        had, wanted = earlier.get(name), now.get(name)
-        if had != wanted:
+        had, given = earlier.get(name), now.get(name)
+        if had != given:
             raise ValueError(
-                f"the history to resume was made with {name}={had}, not {wanted}: give the same "
+                f"the history to resume was made with {name}={had}, not {given}: give the same "
                 "options; or begin without `resume`, on the first mesh of its last sweep"
             )
-
-
-def _begun(
-    save: PathLike | None, history: TransientHistory, resume: TransientHistory | PathLike | None
-) -> Path | None:
-    """The folder to save to; it has what there is to go on with, and nobody else's history."""
-    if save is None:
-        return None
-    folder = Path(save).absolute()
-    is_there = isinstance(resume, (str, Path)) and Path(resume).resolve() == folder.resolve()
-    if not is_there:
-        refuse_history(folder, files.LIST)
-        files.save(history, folder)
-    return folder
-
-
-@contextmanager
-def _explained(
-    history: TransientHistory, sweep: int, interval: int, clock: Clock
-) -> Iterator[None]:
-    """Any exception, with where it happened and what there was until then."""
-    try:
-        yield
-    except KeyboardInterrupt as interrupt:
-        raise TransientInterrupted(history, sweep, interval, clock.stage) from interrupt
-    except Exception as error:
-        raise TransientError(history, sweep, interval, clock.stage, error) from error

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import adaptmesh as am
-from adaptmesh.loop import history_files
+from adaptmesh.loop import archive
 
 
 def solve(mesh, previous):
@@ -149,20 +149,90 @@ def test_a_history_is_not_written_over(start, whole, tmp_path):
 
 def test_an_interruption_of_saving_leaves_what_was_whole(start, whole, tmp_path, monkeypatch):
     am.History(whole[:3], options=whole.options).save(tmp_path)
-    write = history_files.replace_files
+    write = archive.replace_files
 
     def full(contents):
         if any(path.name == "history.json" for path in contents):
             raise am.FormatError("disk full")
         write(contents)
 
-    monkeypatch.setattr(history_files, "replace_files", full)
+    monkeypatch.setattr(archive, "replace_files", full)
     with pytest.raises(am.LoopError, match="iteration 3, save: FormatError: disk full") as caught:
         am.adapt_loop(solve, start, resume=tmp_path, save=tmp_path, **OPTIONS)
     assert len(caught.value.history) == 4
     monkeypatch.undo()
     assert_same(am.History.load(tmp_path), whole[:3])
     assert_same(am.adapt_loop(solve, start, resume=tmp_path, **OPTIONS), whole)
+
+
+def test_folders_of_earlier_versions_are_read(tmp_path):
+    """The files of version 1, written here without the package, as they have been since 0.1."""
+    mesh = {
+        "points": np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),
+        "triangles": np.array([[0, 1, 2]], np.int32),
+        "regions": np.array([1], np.int32),
+        "edges": np.array([[0, 1], [1, 2], [2, 0]], np.int32),
+        "edge_tags": np.array([3, 0, 0], np.int32),
+    }
+    names = {"names": {"wall": 3}, "region_names": {"all": 1}}
+    fields = np.array([1.0, 2.0, 4.0]), np.array([[1.0, 2.0]])
+    seconds = {"adapt": 0.5, "transfer": 0.25, "solve": 2.0, "metric": 0.125}
+
+    notes = {"fields": ["u", "v"], "is_bare": False, "metric_was_given": True, "errors": {"u": 0.5}}
+    np.savez(
+        tmp_path / "iteration_0000.npz",
+        notes=np.array(json.dumps({**names, **notes})),
+        field_0=fields[0],
+        field_1=fields[1],
+        metric=np.tile([4.0, 0.0, 4.0], (3, 1)),
+        given=np.tile([1.0, 0.0, 1.0], (3, 1)),
+        **mesh,
+    )
+    numbers = {"number": 0, "n_points": 3, "n_triangles": 1, "errors": {"u": 0.5}}
+    numbers |= {"unit_fraction": None, "seconds": seconds}
+    content = {"version": 1, "options": {"p": "2"}, "reason": "it was interrupted"}
+    content |= {"converged": False, "iterations": [numbers]}
+    (tmp_path / "history.json").write_text(json.dumps(content))
+
+    history = am.History.load(tmp_path)
+    assert (history.reason, history.converged, history.options_since) == (content["reason"], 0, 0)
+    assert dict(history.options) == {"p": "2"}
+    assert history.seconds.total == 2.875
+    assert np.isnan(history[0].unit_fraction)
+    assert history.mesh.names == {"wall": 3}
+    assert history.mesh.region_names == {"all": 1}
+    for name, values in mesh.items():
+        assert np.array_equal(getattr(history.mesh, name), values)
+    assert list(history.fields) == ["u", "v"]
+    assert np.array_equal(history.fields["u"], fields[0])
+    assert np.array_equal(history.fields["v"], fields[1])
+    assert np.array_equal(history[0].metric, [[4, 0, 4]] * 3)
+    assert np.array_equal(history[0].snapshot.solution.metric, [[1, 0, 1]] * 3)
+
+    notes = {"start": 0.0, "end": 0.5, "is_bare": True, "seconds": seconds}
+    notes |= {"first": ["solution"], "last": ["solution"], "hessians": ["solution"]}
+    np.savez(
+        tmp_path / "sweep_00_interval_0000.npz",
+        notes=np.array(json.dumps({**names, **notes})),
+        first_0=fields[0],
+        last_0=2 * fields[0],
+        hessians_0=np.tile([4.0, 0.0, 1.0], (3, 1)),
+        times=np.array([0.0, 0.25, 0.5]),
+        **mesh,
+    )
+    content = {"version": 1, "options": {"p": "2"}, "intervals": [1]}
+    (tmp_path / "transient.json").write_text(json.dumps(content))
+    ((interval,),) = am.TransientHistory.load(tmp_path).sweeps
+    assert (interval.start, interval.end, interval.is_bare) == (0, 0.5, True)
+    assert interval.times.tolist() == [0, 0.25, 0.5]
+    assert np.array_equal(interval.last["solution"], [2, 4, 8])
+    assert np.array_equal(interval.hessians["solution"], [[4, 0, 1]] * 3)
+    assert interval.mesh == history.mesh
+
+
+def test_the_history_of_the_other_loop_is_refused(start, whole):
+    with pytest.raises(TypeError, match="expected a TransientHistory, got a History"):
+        am.transient_loop(print, print, start, [0, 1], target_vertices=400, resume=whole)
 
 
 @pytest.mark.parametrize(

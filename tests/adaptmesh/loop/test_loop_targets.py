@@ -283,7 +283,7 @@ def test_what_only_the_new_solver_returns_is_solved_for_again(start, options, it
 
 
 def test_a_name_that_no_solver_returns_is_refused(start, done):
-    with pytest.raises(am.LoopError, match=r"there is no field 'w' to steer by") as caught:
+    with pytest.raises(am.LoopError, match=r"there is no field 'w' to adapt the mesh to") as caught:
         am.adapt_loop(other_fields, start, resume=done, target_vertices=400, fields=["w"])
     assert caught.value.history.iterations == done.iterations[:-1]
     options = {"target_vertices": 400, "fields": ["v"], "max_iterations": 0}
