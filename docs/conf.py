@@ -4,6 +4,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pyvista
+from sphinx_gallery.sorting import FileNameSortKey
+
 import adaptmesh
 
 project = "adaptmesh"
@@ -17,6 +20,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.mathjax",
+    "sphinx_gallery.gen_gallery",
 ]
 exclude_patterns = ["_build", "generated/cli.md"]
 
@@ -36,6 +40,24 @@ numpydoc_show_class_members = False  # autosummary lists them
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 autosummary_generate = True
+
+# The examples run when the pages are made, so that their pictures and what they print are true.
+# `sphinx-build -D plot_gallery=0` leaves that out.
+pyvista.BUILDING_GALLERY = True
+pyvista.OFF_SCREEN = True
+sphinx_gallery_conf = {
+    "examples_dirs": "../examples",
+    "gallery_dirs": "generated/gallery",
+    "filename_pattern": r"/\d\d_",
+    "ignore_pattern": r"/data/",
+    "image_scrapers": ("pyvista", "matplotlib"),
+    "within_subsection_order": FileNameSortKey,
+    "abort_on_example_error": True,
+    "download_all_examples": False,
+    "show_memory": False,
+    "show_signature": False,
+    "write_computation_times": False,
+}
 
 
 def write_command_reference() -> None:

@@ -1,5 +1,4 @@
-"""Draw the pictures of the gallery anew: run the examples and the demo, and make small files
-of what they draw.
+"""Draw the picture of the README: `adaptmesh demo`, and a small file of what it draws.
 
 python docs/make_pictures.py
 """
@@ -12,17 +11,16 @@ from pathlib import Path
 
 from PIL import Image
 
-HERE = Path(__file__).parent
-MOST_BYTES = 200_000
+IMAGES = Path(__file__).parent / "images"
+PICTURES = ("naca0012.png",)
+MAX_BYTES = 200_000
 
 
 def main() -> None:
-    commands = [[example] for example in sorted((HERE.parent / "examples").glob("[0-9]*.py"))]
-    for command in [*commands, ["-m", "adaptmesh", "demo", "--out"]]:
-        with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([sys.executable, *command, folder], check=True)
-            for picture in Path(folder).glob("*.png"):
-                reduce(picture, HERE / "images" / picture.name)
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, "-m", "adaptmesh", "demo", "--out", folder], check=True)
+        for name in PICTURES:
+            reduce(Path(folder) / name, IMAGES / name)
 
 
 def reduce(picture: Path, target: Path) -> None:
@@ -34,7 +32,7 @@ def reduce(picture: Path, target: Path) -> None:
         method = Image.Quantize.MAXCOVERAGE
         small = small.quantize(colours, method=method, kmeans=3, dither=Image.Dither.NONE)
         small.save(target, optimize=True)
-        if target.stat().st_size < MOST_BYTES:
+        if target.stat().st_size < MAX_BYTES:
             return
 
 

@@ -1,26 +1,25 @@
-"""A size map: a perforated plate, fine around its holes.
+"""A size map
+==========
+
+A perforated plate, fine around its holes.
 
 The size is a function of position, 4 mm at the rims of the holes, growing by 20 % of the distance
-from them up to 60 mm. Run it with a folder for the picture: python 01_size_map.py out
+from them up to 60 mm.
 """
-
-import sys
-from pathlib import Path
 
 import numpy as np
 import shapely
 
 import adaptmesh as am
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(parents=True, exist_ok=True)
-
+# %%
 # What to mesh: two metres by one, with three round holes.
 centres_and_radii = [(0.45, 0.55, 0.2), (1.05, 0.4, 0.1), (1.5, 0.62, 0.15)]
 holes = shapely.union_all([shapely.Point(x, y).buffer(r, 32) for x, y, r in centres_and_radii])
 domain = am.Domain.polygon(shapely.box(0, 0, 2, 1) - holes)
 
 
+# %%
 # How fine: any function from points (n, 2) to sizes (n,) will do.
 def size(x):
     return np.minimum(0.004 + 0.2 * shapely.distance(holes, shapely.points(x)), 0.06)
@@ -28,6 +27,7 @@ def size(x):
 
 mesh = am.generate(domain, size)
 
+# %%
 # How well the mesh has the size that was asked for.
 report = am.measure(mesh, size)
 print(mesh)
@@ -35,4 +35,5 @@ print(report)
 assert report.unit_fraction > 0.99
 assert abs(mesh.areas.sum() - domain.area) < 1e-12
 
-am.plot(mesh, show="size", path=out / "01_size_map.png", title="A plate, fine around its holes")
+# %%
+am.plot(mesh, show="size", title="A plate, fine around its holes").show()

@@ -1,27 +1,24 @@
-"""A metric: thin triangles along a curved wall.
+"""A wall layer
+============
+
+Thin triangles along a curved wall.
 
 A channel two metres long with a bump on its floor. Along the floor, triangles are to be 0.5 mm
 across and 20 mm along the wall; both sizes grow with the distance. That takes a tensor at every
 point, with the direction across the wall as one of its axes.
-Run it with a folder for the pictures: python 02_wall_layer.py out
 """
-
-import sys
-from pathlib import Path
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 import adaptmesh as am
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(parents=True, exist_ok=True)
-
 
 def floor(s):
     return 0.12 * np.exp(-(((s - 0.8) / 0.18) ** 2))
 
 
+# %%
 # The domain: the floor as a polyline, three straight sides, and a name for each side.
 s = np.linspace(0, 2, 101)
 corners = np.concatenate([np.stack([s, floor(s)], axis=1), [(2, 0.8), (0, 0.8)]])
@@ -29,6 +26,7 @@ n = len(s) - 1
 names = {"floor": range(n), "outlet": [n], "ceiling": [n + 1], "inlet": [n + 2]}
 domain = am.Domain.polygon(corners, names=names)
 
+# %%
 # The floor as a row of near points, to find the nearest one and the direction of the wall there.
 s = np.linspace(0, 2, 2001)
 wall = np.stack([s, floor(s)], axis=1)
@@ -63,6 +61,7 @@ print(mesh)
 print(report)
 assert report.unit_fraction > 0.95
 
+# %%
 # The triangles that stand on the floor are as high as an equilateral one of the size across.
 on_floor = np.unique(np.sort(mesh.edges_named("floor"), axis=1), axis=0)
 sides = np.sort(mesh.triangles[:, [[1, 2], [2, 0], [0, 1]]], axis=2)
@@ -75,12 +74,12 @@ height, base = 1000 * np.median(height), 1000 * np.median(base)
 print(f"first row: height {height:.3f} mm, base {base:.1f} mm")
 assert 0.7 < height / (500 * np.sqrt(3) * H_ACROSS) < 1.4
 
-am.plot(mesh, path=out / "02_wall_layer.png", title="A channel with a bump on its floor")
+# %%
+am.plot(mesh, title="A channel with a bump on its floor").show()
 am.plot(
     mesh,
     metric,
     ellipses=True,
     bounds=(0.6, 0.08, 0.8, 0.16),
-    path=out / "02_wall_layer_detail.png",
     title="Where the bump rises",
-)
+).show()

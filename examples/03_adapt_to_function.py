@@ -1,13 +1,12 @@
-"""Adapting to a function that is known only at the vertices, as a solution would be.
+"""Adapting to a function
+======================
+
+A function that is known only at the vertices, as a solution would be.
 
 Five times: sample the function at the vertices, estimate its Hessian there, scale the Hessian to
 the metric that makes the L2 interpolation error least for a given number of vertices (Loseille and
 Alauzet, Continuous mesh framework part I, SIAM J. Numer. Anal. 49, 2011), and mesh again.
-Run it with a folder for the pictures: python 03_adapt_to_function.py out
 """
-
-import sys
-from pathlib import Path
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -15,9 +14,6 @@ from scipy.sparse import coo_array
 import adaptmesh as am
 import metrics
 from metrics import tensor
-
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(parents=True, exist_ok=True)
 
 VERTICES = 3000
 
@@ -108,12 +104,12 @@ for step in range(5):
 print(am.measure(mesh, field))
 assert l2_error(mesh) < l2_error(uniform) / 10
 
-am.plot(mesh, path=out / "03_adapt_to_function.png", title="Adapted to two fronts")
+# %%
+am.plot(mesh, title="Adapted to two fronts").show()
 am.plot(
     mesh,
     field,
     ellipses=60,
     bounds=(0.4, 0.4, 0.6, 0.6),
-    path=out / "03_adapt_to_function_detail.png",
     title="Where they cross, and what was asked for",
-)
+).show()

@@ -1,21 +1,18 @@
-"""Curves: an aerofoil in a round far field, with its wake.
+"""Curves
+======
+
+An aerofoil in a round far field, with its wake.
 
 The aerofoil is a spline, the far field a circle, the wake any function; the vertices are on the
-curves themselves, and still there after the mesh has been adapted ten times. Run it with a folder
-for the picture: python 04_curves.py out
+curves themselves, and still there after the mesh has been adapted ten times.
 """
-
-import sys
-from pathlib import Path
 
 import numpy as np
 
 import adaptmesh as am
 from adaptmesh.curves import Circle, Parametric, Spline
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(parents=True, exist_ok=True)
-
+# %%
 # NACA 0012, from its trailing edge over the nose and back: a spline that is not closed smoothly,
 # so that the trailing edge stays a corner.
 x = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 50)))
@@ -37,6 +34,7 @@ domain = am.Domain.from_curves(
 )
 
 
+# %%
 # Fine at the nose, the trailing edge and along the wake.
 def size(p, finest=0.006):
     nose = np.hypot(*p.T)
@@ -52,6 +50,7 @@ print(mesh)
 print(report)
 assert report.unit_fraction > 0.99
 
+# %%
 # Ten adaptations, finer and coarser by turns: nothing drifts off its curve.
 for k in range(10):
     finest = 0.006 if k % 2 else 0.02
@@ -62,8 +61,10 @@ print(f"vertices are off the far field by at most {off:.1e}")
 assert off < 1e-14
 mesh.validate().raise_if_invalid()
 
+# %%
 # The area is that between the true curves; of the mesh, that between their chords.
 print(f"area of the domain {domain.area:.6f}, of the mesh {mesh.areas.sum():.6f}")
 assert abs(mesh.areas.sum() / domain.area - 1) < 5e-3
 
-am.plot(mesh, bounds=(-0.2, -0.5, 1.8, 0.6), path=out / "04_curves.png", title="An aerofoil")
+# %%
+am.plot(mesh, bounds=(-0.2, -0.5, 1.8, 0.6), title="An aerofoil").show()

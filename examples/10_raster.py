@@ -1,22 +1,19 @@
-"""A size map from a raster: hills, with small triangles where they are steep.
+"""Sizes from a raster
+===================
+
+Hills, with small triangles where they are steep.
 
 Sizes often come as an image: a satellite product, a simulation on a grid, a drawing. Here one is
 made from heights of terrain, 25 m to a cell, with row 0 in the north as in a GeoTIFF and without
 data where there is water. A file would be read with metrics.Raster.read("size.tif").
-Run it with a folder for the pictures: python 10_raster.py out
 """
-
-import sys
-from pathlib import Path
 
 import numpy as np
 
 import adaptmesh as am
 import metrics
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(parents=True, exist_ok=True)
-
+# %%
 # Heights in metres on 6 km x 4 km; x eastwards along the rows, y southwards from row to row.
 CELL, WIDTH, HEIGHT = 25.0, 6000.0, 4000.0
 x = np.arange(CELL / 2, WIDTH, CELL)
@@ -26,12 +23,14 @@ hills = [(1500, 2700, 600, 420), (3600, 1500, 450, 600), (4700, 3000, 350, 380)]
 heights = sum(h * np.exp(-((X - cx) ** 2 + (Y - cy) ** 2) / r**2) for cx, cy, r, h in hills)
 heights = heights - 40 + 0.02 * X
 
+# %%
 # 200 m on level ground down to 25 m where the terrain rises by 1 in 1; NaN on the water.
 rise = np.hypot(*np.gradient(heights, CELL))
 sizes = np.where(heights > 0, np.clip(40 / np.maximum(rise, 0.01), 25, 200), np.nan)
 raster = metrics.Raster(sizes, x=x, y=y, fill="nearest")
 print(raster)
 
+# %%
 # Whatever else is wanted is added with &: a camp between the hills, to be seen in detail.
 camp = metrics.Distance((4150, 2300), h_min=15, growth=0.25)
 field = raster & camp
@@ -43,4 +42,5 @@ print(report)
 assert report.unit_fraction > 0.97
 assert 0.9 < report.count_ratio < 1.1
 
-am.plot(mesh, show="size", path=out / "10_raster.png", title="Small where the ground is steep")
+# %%
+am.plot(mesh, show="size", title="Small where the ground is steep").show()

@@ -1,21 +1,19 @@
-"""A wall layer from ready-made fields: a strut in a stream, with y+ = 1 at its wall.
+"""A wall layer from ready-made fields
+===================================
+
+A strut in a stream, with y+ = 1 at its wall.
 
 The height of the first layer comes from the Reynolds number, the size along the wall from its
 curvature; away from the wall both sizes grow into one another. Behind the strut the wake is kept
-fine by a second field. Run it with a folder for the pictures: python 11_wall_layer_fields.py out
+fine by a second field.
 """
-
-import sys
-from pathlib import Path
 
 import numpy as np
 
 import adaptmesh as am
 import metrics
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(parents=True, exist_ok=True)
-
+# %%
 # The strut: an ellipse of chord 1 m, and of 0.2 m across.
 t = np.linspace(0, 2 * np.pi, 2001)
 wall = np.stack([0.5 * np.cos(t), 0.1 * np.sin(t)], axis=1)
@@ -27,6 +25,7 @@ wake = metrics.Distance([(0.5, 0), (2.5, 0)], h_min=0.02, growth=0.15)
 field = layer & wake
 print(f"first height {1e6 * height:.0f} micrometres, along the wall {along}")
 
+# %%
 # Corners of the strut, one size apart: equal shares of the integral of ds / h along the wall.
 steps = np.linalg.norm(np.diff(wall, axis=0), axis=1)
 middles = 0.5 * (wall[1:] + wall[:-1])
@@ -43,6 +42,7 @@ print(mesh)
 print(report)
 assert report.unit_fraction > 0.9
 
+# %%
 # The triangles that stand on the wall are as thin as asked, and up to 200 times as long.
 on_wall = np.isin(mesh.triangles, mesh.edges_named("wall"))
 standing = on_wall.sum(axis=1) == 2
@@ -54,13 +54,13 @@ print(
 )
 assert 0.6 < np.median(thin) / (height * np.sqrt(3) / 2) < 1.7
 
+# %%
 view = (-0.9, -0.6, 1.3, 0.6)
-am.plot(mesh, bounds=view, path=out / "11_wall_layer_fields.png", title="A strut and its wake")
+am.plot(mesh, bounds=view, title="A strut and its wake").show()
 am.plot(
     mesh,
     field,
     ellipses=True,
     bounds=(-0.511, -0.0045, -0.496, 0.0045),
-    path=out / "11_wall_layer_fields_detail.png",
     title="The nose",
-)
+).show()

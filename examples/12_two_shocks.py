@@ -1,12 +1,11 @@
-"""Two shocks that cross: the intersection of two metrics.
+"""Two shocks that cross
+=====================
+
+The intersection of two metrics.
 
 Each shock asks for thin triangles along itself. Where they cross both are to be obeyed: the
 intersection of the two metrics, written &, allows no step that is longer than either does.
-Run it with a folder for the pictures: python 12_two_shocks.py out
 """
-
-import sys
-from pathlib import Path
 
 import numpy as np
 
@@ -14,12 +13,10 @@ import adaptmesh as am
 import metrics
 from metrics import tensor
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(parents=True, exist_ok=True)
-
 ACROSS, ALONG = 0.004, 0.08
 domain = am.Domain.rectangle(0, 0, 2, 1)
 
+# %%
 # One shock is a straight line given by its ends, the other a curve given by where a function is 0.
 straight = metrics.Shock([(0.2, 1.0), (1.8, 0.0)], ACROSS, ALONG, growth=0.3, h_max=0.2)
 bow = metrics.Shock(
@@ -27,6 +24,7 @@ bow = metrics.Shock(
 )
 both = straight & bow
 
+# %%
 # Where they cross, a step across either shock is as short as that shock asks for.
 y = np.roots([1.2, 1.6 - 0.6, 0.075 + 0.6 - 1.8])  # x from the curve, put into the line
 y = y[(y > 0) & (y < 1)]
@@ -47,11 +45,11 @@ for name, field in (("straight", straight), ("bow", bow), ("both", both)):
         field,
         ellipses=True,
         bounds=(x0 - 0.12, y0 - 0.08, x0 + 0.12, y0 + 0.08),
-        path=out / f"12_two_shocks_{name}.png",
         title={"both": "The intersection of both"}.get(name, f"The {name} shock alone"),
-    )
+    ).show()
 
+# %%
 report = am.measure(mesh, both)
 print(report)
 assert report.unit_fraction > 0.97
-am.plot(mesh, path=out / "12_two_shocks.png", title="Two shocks that cross")
+am.plot(mesh, title="Two shocks that cross").show()

@@ -1,15 +1,14 @@
-"""Spending vertices where a function bends: interpolation error against their number.
+"""Error against vertices
+======================
+
+Spending vertices where a function bends: interpolation error against their number.
 
 The function is known at the vertices only, as a solution would be. From its values there
 `metrics.metric_from_solution` recovers the Hessian and scales it to the metric of least L2 error
 for the number of vertices asked for (Loseille and Alauzet, Continuous mesh framework part I, SIAM
 J. Numer. Anal. 49, 2011); the mesh that is adapted to it gives better values, and so on. Then the
 other way round: an error is asked for, and the number of vertices found.
-Run it with a folder for the pictures: python 13_hessian_metric.py out
 """
-
-import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -20,8 +19,6 @@ import metrics
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(parents=True, exist_ok=True)
 domain = am.Domain.rectangle(0, 0, 1, 1)
 
 
@@ -83,12 +80,12 @@ print(
 assert 0.7 * asked < l2_error(mesh) < 1.3 * asked
 print(am.measure(mesh, field))
 
+# %%
 picture, _ = adapted(am.generate(domain, 0.04), times=4, target_vertices=2000)
 am.plot(
     picture,
-    path=out / "13_hessian_metric.png",
     title="Adapted to a front, a hill, and ripples",
-)
+).show()
 
 figure, axes = plt.subplots(figsize=(6, 4.5), layout="constrained")
 axes.loglog(*np.transpose(uniform), "o-", color="0.55", label="uniform")
@@ -97,4 +94,4 @@ axes.loglog(*np.transpose([(n, e0 * n0 / n) for n, _ in thrifty]), "k:", label="
 axes.set(xlabel="vertices", ylabel="L2 error of linear interpolation")
 axes.legend(frameon=False)
 axes.spines[["top", "right"]].set_visible(False)
-figure.savefig(out / "13_hessian_metric_error.png", dpi=150)
+plt.show()

@@ -1,15 +1,14 @@
-"""The loop: from a coarse uniform mesh to the best one for a front, for any number of vertices.
+"""The loop, from vertices to error
+================================
+
+From a coarse uniform mesh to the best one for a front, for any number of vertices.
 
 `adapt_loop` is given a function that "solves" by sampling tanh(60 (y - 1/2 - sin(2 pi x) / 5)) at
 the vertices, and a number of vertices; it knows nothing else of the front. The L2 error of linear
 interpolation then falls as one over the number of vertices, which is the best there is, and with
 the constant of the continuous theory (Loseille and Alauzet, Continuous mesh framework part II, SIAM
 J. Numer. Anal. 49, 2011).
-Run it with a folder for the pictures: python 20_loop_interpolation.py out
 """
-
-import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -20,8 +19,6 @@ import metrics
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(parents=True, exist_ok=True)
 domain = am.Domain.rectangle(0, 0, 1, 1)
 
 
@@ -62,7 +59,6 @@ for count in (1000, 3000, 8000, 20000):
     if count == 3000:
         picture, metric = history.mesh, history[-2].metric
         print(am.measure(picture, metrics.Background.on(history[-2].mesh, metric)), end="\n\n")
-        history.plot(out / "20_loop_history.png")
 
 (n0, e0), (n1, e1) = true[0], true[-1]
 order = np.log(e0 / e1) / np.log(n1 / n0)
@@ -72,7 +68,8 @@ assert true[-1][1] * true[-1][0] < 1.13
 assert abs(estimated[-1][1] / true[-1][1] - 1) < 0.05
 assert true[-1][1] < uniform[-1][1] / 10
 
-am.plot(picture, path=out / "20_loop_interpolation.png", title="What the loop has made of a front")
+# %%
+am.plot(picture, title="What the loop has made of a front").show()
 figure, axes = plt.subplots(figsize=(6, 4.5), layout="constrained")
 axes.loglog(*np.transpose(uniform), "o-", color="0.55", label="uniform")
 axes.loglog(*np.transpose(true), "o-", color="tab:red", label="adapt_loop")
@@ -81,4 +78,4 @@ axes.loglog(*np.transpose([(n, e1 * n1 / n) for n, _ in true]), "k:", label="1 /
 axes.set(xlabel="vertices", ylabel="L2 error of linear interpolation")
 axes.legend(frameon=False)
 axes.spines[["top", "right"]].set_visible(False)
-figure.savefig(out / "20_loop_interpolation_error.png", dpi=150)
+plt.show()

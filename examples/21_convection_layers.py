@@ -1,14 +1,15 @@
-"""Convection with little diffusion: layers a ten-thousandth thick, three ways to mesh them.
+"""Convection with thin layers
+===========================
+
+Little diffusion makes layers a ten-thousandth thick, three ways to mesh them.
 
 -eps laplace u + b . grad u = f on the unit square, with eps = 1e-4 and b = (1, 1); u falls to 0 in
 two layers, at the right and at the top. The solver is scikit-fem: linear elements, stabilised by
 SUPG with the length of a triangle along the flow.
-Run it with a folder for the pictures, and a number of vertices for a last, large solve:
-python 21_convection_layers.py out 50000
+With a number of vertices it makes a last, large solve: ``python 21_convection_layers.py 50000``.
 """
 
 import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -22,8 +23,6 @@ from adaptmesh.convert import to_skfem
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(parents=True, exist_ok=True)
 domain = am.Domain.rectangle(0, 0, 1, 1)
 eps = 1e-4
 
@@ -55,6 +54,7 @@ def solve(mesh):
     return skfem.solve(*skfem.condense(matrix, load, D=basis.mesh.boundary_nodes()))
 
 
+# %%
 # The judge: a grid that is fine in the layers, to which the solution is interpolated.
 half = np.concatenate([np.linspace(0, 1 - 2e-3, 300)[:-1], 1 - np.geomspace(2e-3, 1e-6, 200), [1]])
 n = len(half)
@@ -100,7 +100,7 @@ for h in (0.04, 0.02, 0.01, 0.005):
 show(uniform, "uniform")
 round_, _ = study([1000, 2000, 4000, 8000, 16000], max_anisotropy=1)
 show(round_, "isotropic")
-thin, history = study([100, 250, 500, 1000, 2000, *map(int, sys.argv[2:])])
+thin, history = study([100, 250, 500, 1000, 2000, *map(int, sys.argv[1:])])
 show(thin, "anisotropic")
 
 n, error = uniform[-1]
@@ -116,13 +116,13 @@ share = last.seconds.share_of_library
 print(f"{last.n_triangles} triangles: {share:.0%} of the time of a step was in this library")
 print(am.measure(last.mesh, metrics.Background.on(before.mesh, before.metric)))
 
+# %%
 _, history = study([250, 500])
 mesh, u = history[-1].mesh, history[-1].fields["solution"]
-name = "21_convection_layers"
-am.plot(mesh, show=u, path=out / f"{name}.png", title="Two layers, and the corner between")
+am.plot(mesh, show=u, title="Two layers, and the corner between").show()
 corner = (0.9985, 0.9985, 1, 1)
 title = "The last 1.5 thousandths"
-am.plot(mesh, show=u, bounds=corner, path=out / f"{name}_detail.png", title=title)
+am.plot(mesh, show=u, bounds=corner, title=title).show()
 
 figure, axes = plt.subplots(figsize=(6, 4.5), layout="constrained")
 for results, colour, label in (
@@ -139,4 +139,4 @@ axes.loglog([m for m, _ in uniform], power, "k-.", label="vertices to the power 
 axes.set(xlabel="vertices", ylabel="L2 norm of the error")
 axes.legend(frameon=False)
 axes.spines[["top", "right"]].set_visible(False)
-figure.savefig(out / f"{name}_error.png", dpi=150)
+plt.show()

@@ -1,17 +1,18 @@
-"""A bow-shaped front that crosses the domain, on meshes that follow it, with no mass lost.
+"""A front on the move
+===================
+
+A bow-shaped front that crosses the domain, on meshes that follow it, with no mass lost.
 
 du/dt + b . grad u = eps laplace u on a rectangle, with eps = 1e-4. Time is cut into intervals, each
 with a mesh of its own. All are gone through three times: first on a uniform mesh, to see where the
 front will be, then on meshes adapted to where it was in each interval. Values go from mesh to mesh
 by the conservative transfer, which keeps the mass to rounding and makes no new extremes. The solver
 is scikit-fem.
-Run it with a folder for the pictures, and a number of vertices for a last, large solve:
-python 22_moving_front.py out 50000
+With a number of vertices it makes a last, large solve: ``python 22_moving_front.py 50000``.
 """
 
 import itertools
 import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -26,8 +27,6 @@ from adaptmesh.convert import to_skfem
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(parents=True, exist_ok=True)
 domain = am.Domain.rectangle(0, 0, 1.3, 0.8)
 eps, flow, end = 1e-4, np.array([1.0, 0.2]), 0.7
 intervals, steps = 14, 20
@@ -113,7 +112,7 @@ def following(n):
 
 uniform = [on_one_mesh(h) for h in (0.04, 0.03, 0.02)]
 thrifty = []
-for n in [500, 1000, 2000, *map(int, sys.argv[2:])]:
+for n in [500, 1000, 2000, *map(int, sys.argv[1:])]:
     history = following(n)
     last = history.intervals[-1]
     u = last.last["solution"]
@@ -134,6 +133,7 @@ assert order < -0.9
 assert abs(lost) < 1e-10
 print(history, end="\n\n")
 
+# %%
 # The last mesh was made for what happened in its interval in the sweep before.
 before = history.sweeps[-2][-1]
 metric = metrics.metric_from_hessians(
@@ -145,13 +145,12 @@ metric = metrics.metric_from_hessians(
 )
 print(am.measure(last.mesh, metric))
 
-name = "22_moving_front"
-for interval, values, suffix, title in (
-    (shown[0], shown[0].first, "_begin", "The first of fourteen meshes"),
-    (shown[-1], shown[-1].last, "", "The last of fourteen meshes"),
+# %%
+for interval, values, title in (
+    (shown[0], shown[0].first, "The first of fourteen meshes"),
+    (shown[-1], shown[-1].last, "The last of fourteen meshes"),
 ):
-    path = out / f"{name}{suffix}.png"
-    am.plot(interval.mesh, show=values["solution"], path=path, title=title)
+    am.plot(interval.mesh, show=values["solution"], title=title).show()
 figure, axes = plt.subplots(figsize=(6, 4.5), layout="constrained")
 axes.loglog(*np.transpose(uniform), "o-", color="0.55", label="one uniform mesh")
 axes.loglog(*np.transpose(thrifty), "o-", color="tab:red", label="meshes that follow")
@@ -160,4 +159,4 @@ axes.loglog(n, error[-1] * n[-1] / n, "k:", label="1 / vertices")
 axes.set(xlabel="vertices", ylabel="L2 norm of the error at the end")
 axes.legend(frameon=False)
 axes.spines[["top", "right"]].set_visible(False)
-figure.savefig(out / f"{name}_error.png", dpi=150)
+plt.show()

@@ -62,8 +62,12 @@ def _times(seconds: Seconds) -> str:
 
 def draw(iterations: Sequence[Iteration]) -> Figure:
     """Error against vertices beside what theory says, and both by iteration."""
-    from matplotlib.figure import Figure
-
+    try:
+        from matplotlib.figure import Figure
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(
+            'pictures of histories are drawn by matplotlib: pip install "adaptmesh-metric[matplotlib]"'
+        ) from error
     figure = Figure(figsize=(9, 4), layout="constrained")
     against, by_iteration = figure.subplots(1, 2)
     _draw_against_vertices(against, iterations)
