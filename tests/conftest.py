@@ -2,9 +2,11 @@
 
 import importlib.util
 import os
+import random
 import shutil
 import subprocess
 import sys
+from collections import defaultdict
 from pathlib import Path
 
 import pytest
@@ -20,6 +22,29 @@ import metrics  # noqa: E402
 # Lets tests import the oracles: ``from reference.exact import incircle``. Appended, not put first:
 # tests/metrics and tests/adaptmesh must not hide the packages.
 sys.path.append(str(Path(__file__).parent))
+
+
+FAST_CASES = 5
+"""How many cases of a test are run by ``pytest -m "not slow"`` if it does not say otherwise."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Mark all but a few cases of each test as slow, the same ones each time.
+
+    A test whose cases take long says how many are few: ``@pytest.mark.fast_cases(2)``.
+    """
+    cases = defaultdict(list)
+    for item in items:
+        if item.get_closest_marker("slow") is None:
+            cases[item.nodeid.partition("[")[0]].append(item)
+    for name, found in cases.items():
+        marker = found[0].get_closest_marker("fast_cases")
+        few = marker.args[0] if marker else FAST_CASES
+        fast = random.Random(name).sample(range(len(found)), min(few, len(found)))
+        for number, item in enumerate(found):
+            if number not in fast:
+                item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture(scope="session", autouse=True)

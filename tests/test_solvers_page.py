@@ -23,12 +23,14 @@ def check(done):
     assert highest == pytest.approx(HIGHEST, rel=3e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("title", "module"), [("scikit-fem", "skfem"), ("NGSolve", "ngsolve")])
 def test_program_in_this_python(title, module, tmp_path):
     pytest.importorskip(module)
     check(run_here(PROGRAMS[title], tmp_path))
 
 
+@pytest.mark.slow
 def test_program_in_time(tmp_path):
     pytest.importorskip("skfem")
     done = run_here(PROGRAMS["In time"], tmp_path)
@@ -38,12 +40,14 @@ def test_program_in_time(tmp_path):
     assert heat == pytest.approx(1, abs=5e-3)  # quadrature of the spot
 
 
+@pytest.mark.slow
 def test_program_for_freefem(tmp_path):
     if not shutil.which("FreeFem++-nw"):
         pytest.skip("no FreeFEM")
     check(run_here(PROGRAMS["FreeFEM"], tmp_path))
 
 
+@pytest.mark.slow
 def test_program_for_dolfinx(python_with_dolfinx):
     old = "from dolfinx import fem\nfem.functionspace = getattr(fem, 'functionspace', None)"
     old += " or fem.FunctionSpace"

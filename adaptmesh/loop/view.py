@@ -66,7 +66,7 @@ def draw(iterations: Sequence[Iteration]) -> Figure:
         from matplotlib.figure import Figure
     except ModuleNotFoundError as error:
         raise ModuleNotFoundError(
-            'pictures of histories are drawn by matplotlib: pip install "adaptmesh-metric[matplotlib]"'
+            'histories are drawn by matplotlib: pip install "adaptmesh-metric[matplotlib]"'
         ) from error
     figure = Figure(figsize=(9, 4), layout="constrained")
     against, by_iteration = figure.subplots(1, 2)

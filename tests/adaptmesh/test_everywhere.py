@@ -87,6 +87,7 @@ def test_segments_holes_regions_and_names(transform, placement):
     assert predicted == pytest.approx(len(mesh.points), rel=0.1)
 
 
+@pytest.mark.fast_cases(4)
 @everywhere
 @pytest.mark.parametrize("keep", [False, True])
 def test_adapted_to_and_fro(transform, keep):
@@ -152,6 +153,7 @@ def check_rounded_plate(transform, mesh):
     assert am.measure(mesh, carried(transform)).unit_fraction > least
 
 
+@pytest.mark.fast_cases(4)
 @everywhere
 def test_curves(transform):
     domain = rounded_plate(transform)
@@ -165,6 +167,7 @@ def test_curves(transform):
     assert len(mesh.points) == pytest.approx(len(here.points), rel=within)
 
 
+@pytest.mark.fast_cases(2)
 @everywhere
 @pytest.mark.parametrize("keep", [False, True])
 def test_curves_adapted_to_and_fro(transform, keep):
@@ -204,6 +207,7 @@ def check_periodic(mesh, motion, atol):
     assert edges == {frozenset(e) for e in mesh.edges_named(second).tolist()}
 
 
+@pytest.mark.fast_cases(2)
 @everywhere
 @pytest.mark.parametrize("curved", [False, True])
 @pytest.mark.parametrize("keep", [False, True])

@@ -139,6 +139,7 @@ def test_a_copy_stays_frozen(made, how):
         mesh.domain.segments[0] = 0
 
 
+@pytest.mark.fast_cases(5)
 @pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
 def test_a_domain_of_curves_that_is_carried_gives_the_same_bits(transform):
     domain = curved_domain(transform)
@@ -150,6 +151,7 @@ def test_a_domain_of_curves_that_is_carried_gives_the_same_bits(transform):
     assert am.validate(pickle.loads(pickle.dumps(two)))
 
 
+@pytest.mark.slow
 def test_a_process_gives_the_mesh_that_this_one_gives():
     domain = periodic_domain()
     context = multiprocessing.get_context("spawn")
@@ -175,6 +177,7 @@ def test_errors_of_loops_are_carried_whole(error, how):
     assert str(back) == str(error) and vars(back) == vars(error)
 
 
+@pytest.mark.slow
 def test_the_error_of_a_loop_comes_back_from_a_process():
     context = multiprocessing.get_context("spawn")
     mesh = am.generate(periodic_domain(), 0.4)

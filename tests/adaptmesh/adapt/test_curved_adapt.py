@@ -18,6 +18,7 @@ def sizes_about(mesh, k):
     return 0.1 + (0.1 if k % 2 else 0.3) * (1 + wave) / 2 + 0.1 * (k % 2)
 
 
+@pytest.mark.slow
 def test_a_hundred_adaptations_do_not_leave_the_circle():
     mesh = am.generate(DISC, 0.3)
     for k in range(100):
@@ -40,6 +41,7 @@ def areas_by_region(mesh):
     return {name: mesh.areas[mesh.triangles_in(name)].sum() for name in mesh.region_names}
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("name", ["two regions", "disc of two halves", "dangling spiral"])
 def test_names_and_regions_stay_what_they_are(name, tmp_path):
     """A mesh written, read and adapted has the polygon of its chords for a domain, to rounding."""

@@ -40,6 +40,7 @@ def check(mesh, metric):
     return edited
 
 
+@pytest.mark.fast_cases(6)
 @pytest.mark.parametrize("transform", TRANSFORMS, ids=str)
 @pytest.mark.parametrize(
     ("outline", "before", "size"),
@@ -96,6 +97,7 @@ def random_metric(rng, transform, h):
     return lambda x: transform.metric(np.tile(packed, (len(x), 1)))
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("seed", range(CASES))
 def test_random_metrics_on_meshes_of_few_triangles(seed):
     rng = np.random.default_rng(seed)

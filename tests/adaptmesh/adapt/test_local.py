@@ -100,6 +100,7 @@ def test_kept_vertices_are_where_they_were():
     assert mesh.kept is None
 
 
+@pytest.mark.slow
 def test_fifty_steps_of_a_moving_front():
     mesh = am.generate(box(), front(0.4))
     kept, units, ratios = [], [], []
@@ -214,6 +215,7 @@ def test_progress_grows_from_0_to_1():
     assert seen[-1] == 1
 
 
+@pytest.mark.fast_cases(4)
 @pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
 @pytest.mark.parametrize("aspect", [1.0, 1e3])
 def test_scales_and_anisotropy(scale, aspect):
@@ -238,6 +240,7 @@ def test_scales_and_anisotropy(scale, aspect):
     )
 
 
+@pytest.mark.slow
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(max_examples=15, deadline=None)
 def test_random_metrics_on_random_domains(seed):

@@ -115,6 +115,7 @@ def test_the_same_metric_keeps_nearly_all(name, never_anew):
     assert am.validate(edited), am.validate(edited)
 
 
+@pytest.mark.fast_cases(3)
 @pytest.mark.parametrize("name", ["disc", "aerofoil", "dangling spiral", "slanted", "tiny"])
 def test_where_the_curve_asks_for_more_than_the_metric_what_is_there_stays(name, never_anew):
     make, size = CASES[name]
@@ -142,6 +143,7 @@ def off_the_interface(mesh):
     return np.abs(x - interface(x[:, 0] / 4)).max()
 
 
+@pytest.mark.slow
 def test_a_hundred_steps_to_and_fro_over_curves():
     """A front goes over the plate and back: no drift, and no worse than new meshes."""
     domain = plate()
@@ -166,6 +168,7 @@ def test_a_hundred_steps_to_and_fro_over_curves():
     assert 0.96 < min(ratios) <= max(ratios) < 1.04
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PERIODIC)
 def test_periodic_boundaries_correspond_after_a_hundred_steps(name):
     domain, pairs, metrics = PERIODIC[name]

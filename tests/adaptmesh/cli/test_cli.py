@@ -199,6 +199,7 @@ def test_convert(run, mesh):
     assert np.array_equal(am.read("out.vtu").triangles, am.read(mesh).triangles)
 
 
+@pytest.mark.slow
 def test_demo(run, monkeypatch):
     from adaptmesh.cli import demo
 
@@ -280,6 +281,7 @@ def test_a_full_disk_is_a_neat_error(run, square, monkeypatch):
     assert_bad(run("generate", square, "-s", "0.1", "-o", "out.vtu"), "No space left on device")
 
 
+@pytest.mark.slow
 def test_as_a_module(tmp_path):
     domain, output = tmp_path / "bad.geojson", tmp_path / "out.vtu"
     domain.write_text("{")

@@ -58,6 +58,7 @@ def assert_has_the_sizes(path):
     assert am.measure(mesh, size).unit_fraction > 0.9
 
 
+@pytest.mark.fast_cases(3)
 @pytest.mark.parametrize("suffix", [".vtu", ".vtk", ".msh", ".xdmf", ".mesh"])
 def test_a_mesh_of_any_format_carries_the_metric_of_an_outline_or_another_mesh(run, suffix):
     carrier = f"sizes{suffix}"
@@ -135,6 +136,7 @@ def test_holes_of_a_drawing_are_none_on_request(run):
 JUMP = "0.4 - 0.37*(x > 2)"
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize("first", [("generate", "plate.geojson"), ("adapt", "plain.vtu")])
 def test_gradation_lets_sizes_grow_slowly(run, first):
     worst = {}
@@ -151,6 +153,7 @@ def test_gradation_lets_sizes_grow_slowly(run, first):
         usage(run(*first, "-s", "1", "-o", "out.vtu", "--gradation", bad), "factor above 1")
 
 
+@pytest.mark.fast_cases(3)
 @pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
 def test_straight_tolerance_of_a_border_with_rounded_coordinates(run, transform):
     mesh = am.generate(DOMAIN, 0.3)
@@ -180,6 +183,7 @@ def seam(transform):
     return mesh if mesh.areas.min() > 0 else am.Mesh(mesh.points, triangles[:, ::-1])
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
 def test_loose_and_double_points_are_cleaned_with_fields_and_metric(run, transform):
     mesh = seam(transform)
@@ -342,6 +346,7 @@ def test_json_of_a_bad_mesh_and_of_a_repair(run):
 # The reader of the output may leave
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize("command", ["generate", "check", "repair"])
 def test_a_closed_pipe_does_not_stop_the_work(run, command):
     arguments = {
@@ -381,6 +386,7 @@ def complete(words):
     return done.stdout.split()
 
 
+@pytest.mark.slow
 def test_commands_options_and_values_are_completed():
     assert "generate" in complete(["adaptmesh", "gen"])
     assert "--placement" in complete(["adaptmesh", "generate", "--pl"])

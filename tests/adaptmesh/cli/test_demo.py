@@ -7,6 +7,7 @@ import adaptmesh as am
 from adaptmesh.cli import demo
 
 
+@pytest.mark.slow
 def test_everything_is_written_and_reported(tmp_path):
     lines = []
     written = demo.run(tmp_path, say=lines.append, coarsening=8.0)
@@ -76,6 +77,7 @@ def test_the_metric_has_the_sizes_asked_for_across_and_along():
         assert length * size == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_thin_triangles_along_the_wall():
     case = demo.aerofoil(coarsening=4.0)
     mesh = am.generate(case.domain, case.field)

@@ -198,6 +198,7 @@ def test_other_meshes_of_netgen_are_refused(ngsolve):
 # --- FEniCSx ---------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_dolfinx_there_and_back_and_solves(python_with_dolfinx, mesh, tmp_path):
     am.write(tmp_path / "mesh.vtu", mesh)
     done = python_with_dolfinx(SCRIPTS / "poisson_dolfinx.py", "mesh.vtu", "back.vtu")

@@ -152,6 +152,7 @@ def test_lines_that_part_nothing_leave_holes_certain(inner):
 star = st.lists(st.integers(20, 100), min_size=3, max_size=24)
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(star, st.integers(1, 4), st.integers(0, 2**16))
 def test_nested_stars(radii, depth, seed):

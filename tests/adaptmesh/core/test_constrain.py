@@ -75,6 +75,7 @@ def planar_graphs(draw):
     return points, [e[::-1] if draw(st.booleans()) else e for e in segments]
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(planar_graphs())
 def test_random_planar_graphs(graph):

@@ -88,6 +88,7 @@ def of_names(n):
     return lambda: am.repair(am.Outline(domain.points, domain.segments, names=names))
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize(
     ("make", "n"),
     [

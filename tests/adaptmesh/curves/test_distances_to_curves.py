@@ -62,6 +62,7 @@ def points_about(rng, n):
     return np.concatenate([rng.uniform(-2, 2, (n, 2)), near, ellipse(np.linspace(0, 7, n))])
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
 def test_distances_to_an_ellipse(transform):
     domain = am.Domain.from_curves(

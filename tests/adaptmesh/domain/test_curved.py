@@ -248,6 +248,7 @@ def test_chords_across_thin_layers_are_unit(curves, metric):
     assert report.unit_fraction > 0.99
 
 
+@pytest.mark.slow
 def test_many_holes():
     """Work goes with the number of curves and chords, not with their square."""
     holes = [Circle((i, j), 0.3) for i in range(8) for j in range(8)]

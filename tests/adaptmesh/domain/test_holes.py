@@ -59,6 +59,7 @@ def even_odd_area(rings):
     return area.area
 
 
+@pytest.mark.fast_cases(4)
 @pytest.mark.parametrize("transform", TRANSFORMS, ids=str)
 def test_rings_alternate_as_segments_as_curves_and_as_a_polygon(transform):
     for seed in range(8):
@@ -225,6 +226,7 @@ def write_geo(path, points, segments):
     path.write_text("\n".join(out))
 
 
+@pytest.mark.fast_cases(3)
 @pytest.mark.parametrize("transform", SIMILARITIES[:4] + TRANSFORMS[-2:], ids=str)
 @pytest.mark.parametrize("write", [write_svg, write_dxf, write_geo])
 def test_files_of_lines_say_what_domain_says_of_their_holes(write, transform, tmp_path):

@@ -53,6 +53,7 @@ def own(metric):
     return am.measure(mesh, field), am.predict(mesh.domain, field)
 
 
+@pytest.mark.fast_cases(4)
 @pytest.mark.parametrize("metric", [graded, layer])
 @pytest.mark.parametrize("transform", FRAMES, ids=str)
 def test_a_turned_domain_with_a_turned_metric_has_as_good_a_mesh(metric, transform):

@@ -26,6 +26,7 @@ def isotropic(transform, size):
     return field
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("transform", TRANSFORMS[1::2], ids=str)
 def test_a_jump_that_is_graded_gives_good_triangles(transform):
     """Across an inner line, by 20; the metric is turned, sheared and scaled with the domain."""
@@ -48,6 +49,7 @@ def test_a_jump_that_is_graded_gives_good_triangles(transform):
     assert least.min() > -1e-9 * np.abs(field(x)).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("transform", SIMILARITIES[1::3], ids=str)
 def test_regions_are_graded_by_default(transform):
     """A small circle in a large one: sizes by the distance, as beta says."""
@@ -91,6 +93,7 @@ def test_sizes_spread_around_holes_and_not_across_them(transform):
     assert h[1] > 0.4  # 0.1 across the wall, but 3 around it
 
 
+@pytest.mark.slow
 def test_every_control_space_and_every_kind_of_mesh():
     domain = two_squares(SIMILARITIES[0])
     mesh = am.generate(domain, 0.2)
@@ -115,6 +118,7 @@ def test_every_control_space_and_every_kind_of_mesh():
         np.testing.assert_allclose(graded.tensors, right, rtol=1e-12, atol=1e-12)
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize("keep", [False, True])
 @pytest.mark.parametrize("transform", TRANSFORMS[2::4], ids=str)
 def test_adapted_meshes_are_graded_too(transform, keep):

@@ -134,6 +134,7 @@ CONSTRAINED = {
 }  # fmt: skip
 
 
+@pytest.mark.fast_cases(5)
 @pytest.mark.parametrize("domain", CONSTRAINED.values(), ids=CONSTRAINED.keys())
 def test_constraints_that_crowd(domain):
     for h in (0.5, 0.1, 0.03):
@@ -242,6 +243,7 @@ def test_sizes_along_circles(anisotropy, unit):
     meshed(UNIT_SQUARE, vortex, unit=unit)
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("turns", [3, 30, 300])
 def test_axes_that_turn_within_an_edge(turns):
     """No mesh is unit in it; the count grew without end."""
@@ -278,11 +280,13 @@ JUMPS = {
 }
 
 
+@pytest.mark.fast_cases(3)
 @pytest.mark.parametrize("metric", JUMPS.values(), ids=JUMPS.keys())
 def test_jumps(metric):
     meshed(UNIT_SQUARE, metric, unit=0.88)
 
 
+@pytest.mark.slow
 def test_noise_finer_than_edges():
     def noise(x):
         return 0.05 * np.exp(1.5 * np.sin(1e5 * x[:, 0] * x[:, 1] + 7e4 * x[:, 1]))
@@ -304,6 +308,7 @@ class Calls:
         return np.full(len(x), self.size(self.count))
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize(
     "size",
     [lambda n: (0.1, 0.03)[n % 2], lambda n: 0.02 * 1.1**n],
@@ -395,6 +400,7 @@ def ring(x):
     return tensors(0.1, np.minimum(0.002 + 0.5 * off, 0.1), angle + np.pi / 2)
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize("metric", [ring, JUMPS["a disc"]], ids=["ring", "jump"])
 def test_adapting_again_and_again_settles(metric):
     mesh = am.generate(UNIT_SQUARE, 0.1)

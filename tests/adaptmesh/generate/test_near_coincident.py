@@ -17,6 +17,7 @@ SEEDS = int(os.environ.get("NEAR_COINCIDENT_SEEDS", "200"))
 PARTS = 10
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize("part", range(PARTS))
 def test_random_domains_with_nearly_coincident_sides(part):
     wrong = {}
@@ -27,6 +28,7 @@ def test_random_domains_with_nearly_coincident_sides(part):
     assert not wrong
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize("gap", [2.3e-16, 9e-16, 5e-15, 1e-13])
 @pytest.mark.parametrize("slope", [0.3, 0.7234])
 @pytest.mark.parametrize("h", [0.1, 0.03])
@@ -36,6 +38,7 @@ def test_slit(gap, slope, h):
     assert not faults(domain, am.generate(domain, h))
 
 
+@pytest.mark.fast_cases(3)
 @pytest.mark.parametrize("transform", TRANSFORMS, ids=str)
 def test_parts_that_touch_in_points_are_cut_on_all_sides(transform):
     """Both ends of each side are corners where two squares meet."""

@@ -29,6 +29,7 @@ def test_it_is_of_the_area_between_the_curves(domain, area, border):
     assert am.predict(domain, h) == pytest.approx(expected, rel=5e-4)
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize("height", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("domain", [DISC, HOLE], ids=["disc", "hole"])
 def test_layers_thinner_than_the_chords_of_the_domain_are_high(domain, height):

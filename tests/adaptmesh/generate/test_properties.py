@@ -154,15 +154,30 @@ def assert_unit(mesh: am.Mesh, metric: Waves) -> None:
     assert report.n_triangles <= 1.1 * report.ideal_triangles + crowded, report
 
 
-@check(max_examples=250)
-@given(stars, metrics_, st.sampled_from(["front", "edges"]))
-def test_a_mesh_is_valid_complete_and_unit(star, metric, placement):
+def a_mesh_is_valid_complete_and_unit(star, metric, placement):
     domain = star.domain()
     mesh = am.generate(domain, metric, placement=placement)
     assert_is_mesh_of(mesh, domain)
     assert_unit(mesh, metric)
 
 
+any_mesh = given(stars, metrics_, st.sampled_from(["front", "edges"]))
+
+
+@check(max_examples=30)
+@any_mesh
+def test_a_mesh_is_valid_complete_and_unit(star, metric, placement):
+    a_mesh_is_valid_complete_and_unit(star, metric, placement)
+
+
+@pytest.mark.slow
+@check(max_examples=250)
+@any_mesh
+def test_many_meshes_are_valid_complete_and_unit(star, metric, placement):
+    a_mesh_is_valid_complete_and_unit(star, metric, placement)
+
+
+@pytest.mark.slow
 @check(max_examples=40)
 @given(stars, metrics_)
 def test_adapting_keeps_the_domain(star, metric):
@@ -174,6 +189,7 @@ def test_adapting_keeps_the_domain(star, metric):
     assert_unit(mesh, metric)
 
 
+@pytest.mark.slow
 @check(max_examples=25)
 @given(stars, metrics_)
 def test_the_domain_found_from_a_mesh_is_the_one_it_was_made_of(star, metric):
@@ -191,6 +207,7 @@ def test_the_domain_found_from_a_mesh_is_the_one_it_was_made_of(star, metric):
     assert_is_mesh_of(am.adapt(bare, metric(bare.points)), domain)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scale", "turn"),
     [(1.0, ((0.0, -1.0), (1.0, 0.0))), (0.37, ((0.6, -0.8), (0.8, 0.6)))],

@@ -24,6 +24,7 @@ def jump(inside, fine, coarse):
     return lambda x: np.where(inside(x), fine, coarse)
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("placement", ["front", "edges"])
 @pytest.mark.parametrize("inside", [in_disc, in_band], ids=["disc", "band"])
 @pytest.mark.parametrize("ratio", [5, 50])

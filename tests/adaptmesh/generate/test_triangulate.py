@@ -132,6 +132,7 @@ def test_same_triangles_as_qhull():
 coordinates = st.integers(0, 6).map(float)
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(st.lists(st.tuples(coordinates, coordinates), min_size=3, max_size=14))
 def test_every_triangle_has_an_empty_circle(points):

@@ -34,6 +34,7 @@ def others():
     return contents()
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize(
     ("suffix", "way"), [(suffix, way) for suffix, ways in WHOLE.items() for way in ways]
 )
@@ -52,6 +53,7 @@ def test_damaged(suffix, way, tmp_path, others, capfd, monkeypatch):
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("suffix", [".mesh", ".meshb", ".vtu", ".ele", ".sol", ".solb"])
 def test_cut_anywhere_is_refused(suffix, tmp_path):
     (way, *_) = WHOLE[suffix]
@@ -71,6 +73,7 @@ def everything(path):
     return counts, tags, dict(mesh.names), dict(mesh.region_names)
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize(
     ("suffix", "way"),
     [

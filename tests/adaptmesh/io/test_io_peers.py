@@ -63,6 +63,7 @@ with XDMFFile(MPI.COMM_SELF, sys.argv[2], "w") as file:
 """
 
 
+@pytest.mark.slow
 def test_dolfinx_reads_and_writes_xdmf(tmp_path, python_with_dolfinx):
     mesh = a_mesh()
     ours, theirs = tmp_path / "ours.xdmf", tmp_path / "theirs.xdmf"

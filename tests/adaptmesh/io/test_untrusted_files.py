@@ -123,6 +123,7 @@ def test_entities_of_illustrator():
 # ------------------------------------------------------------------------------------------ .geo
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize(
     "text",
     [
@@ -209,6 +210,7 @@ COMPRESSED = 'header_type="UInt64" compressor="vtkZLibDataCompressor"'
 REAL = '<DataArray type="Float64" Name="{}" NumberOfComponents="{}" format="{}"{}>{}</DataArray>'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", ["zlib", "lzma"])
 def test_vtu_of_zeros(file, how):
     name = COMPRESSED.replace("ZLib", "LZMA" if how == "lzma" else "ZLib")
@@ -393,6 +395,7 @@ def overfull(file, **options):
     G.id.write_direct_chunk((0, 0), zlib.compress(bytes(200 << 20)))
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize(
     ("fill", "why"),
     [

@@ -68,6 +68,7 @@ def assert_same(one, two):
             assert np.array_equal(a.fields[name], b.fields[name])
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize("at", [0, 1, 3])
 def test_interrupted_and_resumed_is_as_never_interrupted(start, whole, at, tmp_path):
     with pytest.raises(am.LoopInterrupted) as caught:

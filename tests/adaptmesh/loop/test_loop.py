@@ -116,6 +116,7 @@ def test_beside_a_metric_fields_are_watched_until_they_settle(square):
     assert len(alone) < len(history)
 
 
+@pytest.mark.slow
 def test_fields_are_chosen_by_name_and_each_has_its_error(square):
     def solve(mesh):
         x = mesh.points
@@ -145,6 +146,7 @@ def test_the_solvers_own_error_counts(square):
     assert history.counts[-1] == pytest.approx(625, rel=0.05)
 
 
+@pytest.mark.slow
 def test_regions_names_and_areas_are_kept_by_many_iterations(plate):
     mesh = am.generate(plate, 0.3)
     bare = dataclasses.replace(mesh, domain=None)
@@ -171,6 +173,7 @@ def test_regions_names_and_areas_are_kept_by_many_iterations(plate):
     assert len(history[15].mesh.domain.points) == len(history.mesh.domain.points)
 
 
+@pytest.mark.slow
 def test_meshes_that_nobody_keeps_are_let_go(square, tmp_path):
     def alive():
         gc.collect()

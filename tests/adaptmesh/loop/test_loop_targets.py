@@ -83,6 +83,7 @@ FIELDS = {
 }
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("name", FIELDS)
 def test_fields_that_vary_in_one_direction_settle_at_the_error_asked_for(name):
     mesh = am.generate(am.Domain.rectangle(0, 0, 1, 1), 0.1)
@@ -91,6 +92,7 @@ def test_fields_that_vary_in_one_direction_settle_at_the_error_asked_for(name):
     assert np.abs(np.log(ratios)).mean() < 0.1 and (ratios < 1.3).all() and (ratios > 0.75).all()
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
 def test_the_error_asked_for_is_met_wherever_the_domain_lies(transform):
     """The L² norm carries the unit of the domain: by the scale, it is the same figure."""
@@ -128,6 +130,7 @@ def test_a_linear_field_has_any_error_asked_for_at_once(start):
     assert history.converged and len(history) == 1 and "linear" in history.reason
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
 def test_a_linear_field_takes_none_of_the_mesh_of_another(transform):
     mesh = am.generate(am.Domain.polygon(transform(L_SHAPE)), 0.12 * transform.scale)
@@ -157,6 +160,7 @@ def test_a_slight_bend_is_not_taken_for_none(start):
     assert (history.errors["solution"] > 0).all()
 
 
+@pytest.mark.fast_cases(6)
 @pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
 def test_a_feature_that_falls_between_the_vertices_is_no_convergence(transform):
     """The bump is seen on the first mesh, and by no vertex of the coarse one asked for."""
@@ -192,6 +196,7 @@ def test_another_target_is_gone_on_to(start, done):
     assert np.array_equal(more.mesh.points, straight.mesh.points)
 
 
+@pytest.mark.fast_cases(5)
 @pytest.mark.parametrize(
     "options",
     [
@@ -258,6 +263,7 @@ def other_fields(mesh, previous):
     return {"u": wavy(mesh), "v": mesh.points[:, 1] ** 2}
 
 
+@pytest.mark.fast_cases(3)
 @pytest.mark.parametrize(
     "options",
     [

@@ -326,6 +326,7 @@ def whole():
     )
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("stop", [0, 1, 2, 5])
 def test_stopped_in_the_middle_of_an_interval_and_resumed(whole, stop, tmp_path):
     mesh, expected = whole

@@ -34,6 +34,7 @@ def test_corners_of_what_was_rounded_first(transform, rounded):
     assert domain.corners_found.tolerance < 50 * error + far
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
 def test_true_corners_and_curves_beside_noise_stay(transform):
     """A side bent by 50 times the noise, a jog, and a half circle of short edges."""

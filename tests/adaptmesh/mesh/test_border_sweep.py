@@ -83,6 +83,7 @@ def rings(rng):
     return np.array(points), edges
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize("transform", TRANSFORMS[1::2], ids=str)
 def test_layers_are_winding_numbers(transform):
     rng = np.random.default_rng(7)

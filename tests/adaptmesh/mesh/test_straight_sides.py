@@ -64,6 +64,7 @@ def farthest(points, domain):
     return float(worst) ** 0.5
 
 
+@pytest.mark.fast_cases(6)
 @pytest.mark.parametrize("rounded", ROUNDED)
 @pytest.mark.parametrize("transform", TRANSFORMS, ids=str)
 def test_rounded_straight_sides_have_no_corners(transform, rounded):
@@ -90,6 +91,7 @@ def test_rounded_straight_sides_have_no_corners(transform, rounded):
     assert f"7 corners of {found.vertices} vertices" in str(am.measure(coarse, size(0.5)))
 
 
+@pytest.mark.fast_cases(5)
 @pytest.mark.parametrize("rounded", ["as it is", "9 digits", "float32"])
 @pytest.mark.parametrize("offset", [(0.0, 0.0), (5e5, 5.2e6)], ids=["near", "UTM"])
 def test_true_corners_of_tiny_angles_stay(rounded, offset):

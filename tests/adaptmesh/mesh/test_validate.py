@@ -405,6 +405,7 @@ wild = st.floats(allow_nan=True, allow_infinity=True)
 tame = st.integers(-3, 3).map(float) | st.floats(-1e308, 1e308)
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(st.data(), st.integers(0, 7), st.integers(0, 8), st.integers(0, 4), st.booleans())
 def test_garbage_never_crashes(data, n, m, k, plausible):

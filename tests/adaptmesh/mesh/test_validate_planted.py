@@ -90,6 +90,7 @@ def meshes() -> list[am.Mesh]:
     return [mesh for mesh in found if mesh is not None]
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("name", HARMLESS)
 def test_right_meshes_are_valid(name):
     for mesh in meshes():
@@ -97,6 +98,7 @@ def test_right_meshes_are_valid(name):
         assert validity.ok, str(validity)
 
 
+@pytest.mark.fast_cases(3)
 @pytest.mark.parametrize("name", FAULTS)
 def test_faults_are_found_and_named_with_their_place(name):
     planted = [plant for mesh in meshes() if (plant := FAULTS[name](mesh)) is not None]

@@ -22,6 +22,7 @@ COUNT = int(os.environ.get("ADAPTMESH_RIGHT_MESHES", "40"))
 LARGEST_EXACT = 100  # triangles: the oracle looks at every pair
 
 
+@pytest.mark.slow
 def test_right_meshes_are_valid_and_the_exact_oracle_agrees():
     seen = 0
     for number in range(COUNT):
@@ -39,6 +40,7 @@ def test_right_meshes_are_valid_and_the_exact_oracle_agrees():
     assert seen >= 0.9 * COUNT
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize("transform", TRANSFORMS[::2], ids=str)
 def test_the_oracle_finds_what_validate_finds(transform):
     points = transform([(0, 0), (2, 0), (2, 1), (0, 1), (1, 0), (1, 1)])
@@ -69,6 +71,7 @@ def star(arms):
     return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
 
 
+@pytest.mark.slow
 def test_a_star_takes_n_log_n():
     """Long sides beside each other, each in the bounding boxes of a thousand others."""
 

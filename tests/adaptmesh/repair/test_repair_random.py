@@ -19,6 +19,7 @@ def test_a_valid_mesh_or_a_place(seed):
     check(seed)
 
 
+@pytest.mark.slow
 @given(
     st.lists(st.tuples(COORDINATES, COORDINATES), min_size=3, max_size=12),
     st.sampled_from([1e-6, 1.0, 1e6]),

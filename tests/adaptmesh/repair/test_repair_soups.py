@@ -9,6 +9,7 @@ import pytest
 from reference.soups import check_soup
 
 
+@pytest.mark.fast_cases(1)
 @pytest.mark.parametrize("block", range(8))
 def test_meshes_of_repaired_soups_are_valid(block):
     count = int(os.environ.get("SOUPS", "400")) // 8

@@ -167,6 +167,7 @@ def test_the_integral_stays(moved_pair, transform, space, keep_bounds):
     )
 
 
+@pytest.mark.fast_cases(6)
 @pytest.mark.parametrize("space", SPACES)
 def test_there_and_back_many_times(moved_pair, transform, space):
     values = np.random.default_rng(1).random(Space(moved_pair[0], space).size)

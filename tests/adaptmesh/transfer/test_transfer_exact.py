@@ -145,6 +145,7 @@ def pairs():
     return small_pairs()
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("transform", FEW, ids=str)
 @pytest.mark.parametrize("case", small_pairs(), ids=str)
 @pytest.mark.parametrize("space", SPACES)

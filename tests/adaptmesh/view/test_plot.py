@@ -117,6 +117,7 @@ def test_quality(draw):
     assert has(image, "#" + bytes(good).hex(), 40) > 1_000
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize(("size", "wanted"), [(0.2, "unit"), (1 / 14, "long"), (0.7, "short")])
 def test_lengths(draw, size, wanted):
     bare = Mesh(MESH.points, MESH.triangles)
@@ -145,6 +146,7 @@ def test_sizes_and_values(draw):
         assert has(image, "#" + bytes(table[-3]).hex(), 20) > 100
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("hole", ["nan", "masked"])
 @pytest.mark.parametrize("at", ["points", "triangles"])
 def test_no_value_has_a_colour_of_its_own_and_changes_no_other(draw, hole, at):
@@ -184,6 +186,7 @@ def test_zoom_is_cut_at_its_bounds(draw):
     assert has(image[:, x1 + 2 : x1 + 6], colours.REGIONS[0], 2) == 0
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize(
     ("scale", "offset"), [(1e-9, 0), (1e9, 0), (1, 1e6), (1e-3, 1e6), (1e200, 0), (1e-200, 0)]
 )

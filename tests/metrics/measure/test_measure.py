@@ -130,6 +130,7 @@ def test_area_in_a_constant_metric():
     np.testing.assert_allclose(got, [50, 50, -50], rtol=1e-13)
 
 
+@pytest.mark.slow
 def test_areas_agree_with_brute_force():
     points, triangles = random_mesh()
     for field, rtol in ((growing, 1e-4), (wave, 2e-2)):
@@ -233,6 +234,7 @@ def quarter_circle_source():
     return 2 * inner.mean() * np.pi / 4
 
 
+@pytest.mark.fast_cases(5)
 @pytest.mark.parametrize(
     ("field", "wanted"),
     [
@@ -280,6 +282,7 @@ def across_square(density, normal, offset, thin):
     return (density(at) * chord * w * half[:, None]).sum()
 
 
+@pytest.mark.fast_cases(2)
 @pytest.mark.parametrize("thin", [0.1, 1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("kind", ["isotropic", "along it 0.2"])
 def test_the_error_of_a_complexity_is_a_bound_for_layers_at_any_angle(thin, kind):

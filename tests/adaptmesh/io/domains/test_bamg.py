@@ -56,6 +56,7 @@ def g(tmp_path):
     return write
 
 
+@pytest.mark.fast_cases(4)
 @pytest.mark.parametrize("case", CURVED)
 def test_bamg_puts_its_vertices_on_our_curves(g, case):
     bamg = shutil.which("ffbamg")
