@@ -8,11 +8,12 @@ it does to it. Its 3000 points are as near as 300 m to each other, far below the
 `simplify` leaves out what does not matter at that size.
 """
 
+import sys
 from pathlib import Path
 
 import adaptmesh as am
 
-coast = Path(__file__).parent / "data" / "iceland.geojson"
+coast = Path(sys.argv[0]).parent / "data" / "iceland.geojson"
 
 # %%
 # Without repair it is refused, by place.

@@ -34,7 +34,9 @@ def test_example_runs_and_asserts(example, tmp_path):
     if "import skfem" in code:
         pytest.importorskip("skfem")
     assert ").show()" in code, "an example shows a picture"
-    code = f"__file__ = {str(example)!r}\n" + (code if can_draw() else NO_PICTURES + code)
+    code = f"import sys; sys.argv = [{str(example)!r}]\n" + (
+        code if can_draw() else NO_PICTURES + code
+    )
     run = run_python(code, tmp_path)
     assert run.returncode == 0, run.stderr
     assert "Unit mesh report" in run.stdout
