@@ -33,17 +33,18 @@ class Request:
 
     def __init__(self, size: str | None, metric: Path | None, field: str | None = None) -> None:
         import metrics
-        from adaptmesh.io.formats import FORMATS
+        from adaptmesh.io.formats import FORMATS, mesh_suffix
 
         if size is not None and metric is not None:
             raise typer.BadParameter("give one of --size and --metric")
         self.size = None if size is None else metrics.Expression(size)
         self.metric, self.field = metric, field
         suffix = "" if metric is None else metric.suffix.lower()
-        self._holds_a_mesh = suffix in FORMATS
+        self._holds_a_mesh = metric is not None and mesh_suffix(metric) is not None
         if field is not None and not self._holds_a_mesh:
             raise typer.BadParameter("--metric-field names a field in the mesh given as --metric")
-        if metric is not None and suffix not in (*FORMATS, *SOLUTION_SUFFIXES, *RASTER_SUFFIXES):
+        others = (*SOLUTION_SUFFIXES, *RASTER_SUFFIXES)
+        if metric is not None and not self._holds_a_mesh and suffix not in others:
             raise typer.BadParameter(
                 f"--metric {metric}: expected a solution ({' '.join(SOLUTION_SUFFIXES)}), a mesh "
                 f"({' '.join(FORMATS)}) or a raster ({' '.join(RASTER_SUFFIXES)})"

@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from adaptmesh.errors import FormatError
 from adaptmesh.files.located import located
-from adaptmesh.mesh.incoming import Content, refuse_cells
+from adaptmesh.io.meshes.meshio_parts import NUMBERS, Parts, content_of
+from adaptmesh.io.meshes.second_order import with_corners_only
 from adaptmesh.mesh.mesh import Mesh
 
-from .labels import incoming, split_fields, tags_of_sets
+from .labels import incoming, split_fields
 
 if TYPE_CHECKING:
     import meshio
 
-__all__ = ["from_meshio", "to_meshio"]
-
-# What the readers of meshio call the numbers of regions and boundaries, the most telling first.
-NUMBERS = ("gmsh:physical", "medit:ref", "cell_tags", "gmsh:geometrical")
-_DIMENSIONS = {"triangle": 2, "line": 1}
+__all__ = ["NUMBERS", "from_meshio", "to_meshio"]
 
 
 def to_meshio(mesh: Mesh, /, **fields: ArrayLike) -> meshio.Mesh:
@@ -70,55 +65,22 @@ def from_meshio(m: meshio.Mesh) -> Mesh:
     """A mesh of meshio as a mesh.
 
     Regions and tags are those under the first of `NUMBERS` that there is, with the names in
-    ``field_data``; or else the ``cell_sets``.
+    ``field_data``; or else the ``cell_sets``: a cell in several sets has the names of all, with a
+    `FormatWarning`.
 
     Raises
     ------
     FormatError
-        For cells that are not triangles, lines or vertices, for points out of the plane, and for
-        a cell in two sets.
+        For cells that are not triangles, lines or vertices, and for points out of the plane.
     """
-    counts = Counter[str]()
-    for block in m.cells:
-        counts[block.type] += len(block.data)
-    refuse_cells({k: c for k, c in counts.items() if k not in (*_DIMENSIONS, "vertex")})
-    triangles, regions, region_names = _labelled(m, "triangle")
-    edges, tags, names = _labelled(m, "line")
-    content = Content(m.points, triangles, regions, edges, tags, names, region_names)
-    return incoming(content, "the mesh of meshio")
-
-
-def _labelled(m: meshio.Mesh, kind: str) -> tuple[NDArray[Any], NDArray[Any], dict[str, int]]:
-    """The cells of a kind, in all blocks; the tag of each; the tag of each name."""
-    blocks = [i for i, block in enumerate(m.cells) if block.type == kind]
-    if not blocks:
-        return np.empty((0, _DIMENSIONS[kind] + 1), np.int64), np.empty(0, np.int32), {}
-    cells = np.concatenate([m.cells[i].data for i in blocks])
-    for key in NUMBERS:
-        if key in m.cell_data:
-            numbers = np.concatenate([np.asarray(m.cell_data[key][i]) for i in blocks])
-            return cells, numbers.astype(np.int64), _names(m, _DIMENSIONS[kind])
-    starts = np.cumsum([0, *(len(m.cells[i].data) for i in blocks)])
-    sets = {}
-    for name, parts in m.cell_sets.items():
-        items = [
-            start + np.asarray(parts[i], np.int64)
-            for start, i in zip(starts, blocks, strict=False)
-            if parts[i] is not None and len(parts[i])
-        ]
-        if items and not name.startswith("gmsh:"):
-            sets[name] = np.concatenate(items)
+    parts = Parts(
+        m.points,
+        [(block.type, np.asarray(block.data)) for block in m.cells],
+        cell_data=m.cell_data,
+        cell_sets=m.cell_sets,
+        field_data=m.field_data,
+        families=getattr(m, "cell_tags", {}),
+    )
     with located("the mesh of meshio"):
-        numbers, names = tags_of_sets(sets, len(cells), kind, None)
-    return cells, numbers, names
-
-
-def _names(m: meshio.Mesh, dimension: int) -> dict[str, int]:
-    out: dict[str, int] = {}
-    for name, entry in m.field_data.items():
-        values = np.ravel(entry)
-        if len(values) != 2:
-            raise FormatError(f"field_data[{name!r}] is {entry}, not a number and a dimension")
-        if values[1] == dimension:
-            out[name] = int(values[0])
-    return out
+        content = with_corners_only(content_of(parts))
+    return incoming(content, "the mesh of meshio")

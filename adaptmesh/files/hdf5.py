@@ -63,6 +63,31 @@ class Hdf5File:
             values: Array = np.asarray(found[()])
         return values
 
+    def check_all(self) -> None:
+        """Raise for anything that leads to another file or is larger than it may be."""
+        h5py = import_h5py()
+        with refusing(f"{self._name} is damaged"):
+            groups, seen = [self._file], {h5py.h5o.get_info(self._file.id).addr}
+            while groups:
+                group = groups.pop()
+                for name in group:
+                    link = group.get(name, getlink=True)
+                    if isinstance(link, h5py.ExternalLink):
+                        raise FormatError(
+                            f"{name!r} in {self._name} leads to another file: {_IN_ONE_FILE}"
+                        )
+                    if not isinstance(link, h5py.HardLink):
+                        continue
+                    found = group[name]
+                    place = h5py.h5o.get_info(found.id).addr
+                    if place in seen:
+                        continue
+                    seen.add(place)
+                    if isinstance(found, h5py.Group):
+                        groups.append(found)
+                    elif isinstance(found, h5py.Dataset):
+                        self._check_storage(name, found)
+
     def _found(self, path: str) -> Any:
         """The object at a path, by links within the file only."""
         h5py = import_h5py()
@@ -87,10 +112,13 @@ class Hdf5File:
         return at[-1]
 
     def _check(self, path: str, found: Any) -> None:
-        if found.is_virtual or found.external:
-            raise FormatError(f"{path!r} in {self._name} is kept in another file: {_IN_ONE_FILE}")
         if found.dtype.kind not in "iufb":
             raise FormatError(f"{path!r} in {self._name} holds {found.dtype}, not numbers")
+        self._check_storage(path, found)
+
+    def _check_storage(self, path: str, found: Any) -> None:
+        if found.is_virtual or found.external:
+            raise FormatError(f"{path!r} in {self._name} is kept in another file: {_IN_ONE_FILE}")
         self._allowance.take(math.prod(found.shape), found.dtype.itemsize)
         if found.chunks:
             self._check_blocks(found)
@@ -103,7 +131,9 @@ class Hdf5File:
             raise FormatError(
                 f"is compressed by the filters {filters} of HDF5; save it with gzip, or without"
             )
-        size = math.prod(found.chunks) * found.dtype.itemsize
+        # An item of variable length is a place of 16 bytes.
+        itemsize = 16 if found.dtype.kind == "O" else found.dtype.itemsize
+        size = math.prod(found.chunks) * itemsize
         for k in range(found.id.get_num_chunks()):
             self._blocks.take(size)
             if _DEFLATE in filters:

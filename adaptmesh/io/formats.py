@@ -76,7 +76,19 @@ FORMATS: dict[str, Format] = {
     ".xmf": Format("xdmf", has_more_files=True),
     ".ele": Format("triangle", has_more_files=True, seeds=True),
 }
-"""Format of meshes by extension in lower case."""
+_MESHIO = Format("by_meshio", has_more_files=True, periodic=False)
+FORMATS |= dict.fromkeys(
+    (
+        ".inp", ".bdf", ".nas", ".fem", ".su2", ".med", ".vol", ".vol.gz", ".e", ".exo", ".ex2",
+        ".dat", ".tec", ".avs", ".dato", ".dato.gz", ".post", ".post.gz", ".h5m", ".hmf", ".mdpa",
+        ".obj", ".off", ".ply", ".stl", ".ugrid", ".xml",
+    ),
+    _MESHIO,
+)  # fmt: skip
+"""Format of meshes by extension in lower case; one may have two parts, ``.vol.gz``."""
+
+SOLIDS = {".cgns": "CGNS", ".f3grid": "FLAC3D", ".node": "TetGen"}
+"""Formats of which meshio knows solids only."""
 
 OUTLINES = {
     ".geojson": "geojson:read_geojson",
@@ -94,17 +106,29 @@ OUTLINES = {
 but no mesh."""
 
 
+def mesh_suffix(path: Path) -> str | None:
+    """The extension of a mesh, of two parts or one; None if it is not that of a mesh."""
+    both = "".join(path.suffixes[-2:]).lower()
+    suffix = both if both in FORMATS else path.suffix.lower()
+    return suffix if suffix in FORMATS else None
+
+
 def format_of(path: Path) -> Format:
     """The format of meshes that the extension of a path tells."""
+    found = mesh_suffix(path)
+    if found is not None:
+        return FORMATS[found]
     suffix = path.suffix.lower()
-    found = FORMATS.get(suffix)
-    if found is None:
-        if suffix in OUTLINES:
-            raise FormatError(
-                f"{path}: {path.suffix!r} is the extension of an outline, which read_domain reads, "
-                f"not of a mesh; those are {', '.join(FORMATS)}"
-            )
+    if suffix in OUTLINES:
         raise FormatError(
-            f"{path}: the extension {path.suffix!r} is not known; known are {', '.join(FORMATS)}"
+            f"{path}: {path.suffix!r} is the extension of an outline, which read_domain reads, "
+            f"not of a mesh; those are {', '.join(FORMATS)}"
         )
-    return found
+    if suffix in SOLIDS:
+        raise FormatError(
+            f"{path}: of {SOLIDS[suffix]}, meshio reads and writes tetrahedra only; expected a "
+            f"mesh of triangles in one of {', '.join(FORMATS)}"
+        )
+    raise FormatError(
+        f"{path}: the extension {path.suffix!r} is not known; known are {', '.join(FORMATS)}"
+    )

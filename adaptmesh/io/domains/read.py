@@ -17,7 +17,7 @@ from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.files.located import located, only_our_errors
 from adaptmesh.io.domains.drawings.drawing import Drawing
 from adaptmesh.io.domains.geo.plane_model import PlaneModel
-from adaptmesh.io.formats import FORMATS, OUTLINES
+from adaptmesh.io.formats import FORMATS, OUTLINES, mesh_suffix
 from adaptmesh.io.read import read_mesh_or_outline
 
 Raw: TypeAlias = Domain | Outline | Drawing | PlaneModel | list[Shape]
@@ -99,7 +99,7 @@ def read_raw(path: str | os.PathLike[str]) -> Raw:
 
 
 def _domain_of_mesh_file(path: Path) -> Domain | Outline:
-    if path.suffix.lower() not in FORMATS:
+    if mesh_suffix(path) is None:
         raise FormatError(
             f"the extension {path.suffix!r} is not known; known are those of outlines, "
             f"{', '.join(OUTLINES)}, and of meshes, {', '.join(FORMATS)}"

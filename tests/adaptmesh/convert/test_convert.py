@@ -143,13 +143,17 @@ def test_sets_of_meshio_become_names():
     assert "rim" in am.adapt(back, 0.3).names
 
 
-def test_meshio_with_other_cells_or_two_names_is_refused():
-    with pytest.raises(am.FormatError, match="1 quad"):
-        convert.from_meshio(meshio.Mesh(MESH.points, [("quad", [[0, 1, 2, 3]])]))
+def test_cells_in_two_sets_of_meshio_have_both_names():
     sets = {"a": [[0, 1]], "b": [[1]]}
     m = meshio.Mesh(MESH.points, [("triangle", MESH.triangles)], cell_sets=sets)
-    with pytest.raises(am.FormatError, match="triangle 1 is in both 'a' and 'b'"):
-        convert.from_meshio(m)
+    with pytest.warns(am.FormatWarning, match=r"several sets .* 'a\|b'"):
+        back = convert.from_meshio(m)
+    assert [back.triangles_in(name).tolist() for name in ("a", "a|b")] == [[0], [1]]
+
+
+def test_meshio_with_other_cells_is_refused():
+    with pytest.raises(am.FormatError, match="1 quad"):
+        convert.from_meshio(meshio.Mesh(MESH.points, [("quad", [[0, 1, 2, 3]])]))
     m = meshio.Mesh(
         MESH.points, [("triangle", MESH.triangles)], cell_data={"medit:ref": [[1, 2]]},
         field_data={"steel": [1]},
