@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from adaptmesh.files.located import located
-from adaptmesh.io.meshes.meshio_parts import NUMBERS, Parts, content_of
-from adaptmesh.io.meshes.second_order import with_corners_only
 from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.mesh.meshio_parts import NUMBERS, Parts, content_of
+from adaptmesh.mesh.second_order import with_corners_only
 
 from .labels import incoming, split_fields
 

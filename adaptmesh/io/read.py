@@ -10,11 +10,11 @@ from adaptmesh.domain.outline import Outline
 from adaptmesh.files.located import located, only_our_errors
 from adaptmesh.mesh.incoming import fields_of, mesh_of
 from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.mesh.second_order import with_corners_only
 from adaptmesh.types import Array
 
 from .formats import format_of
 from .meshes.outlines import outline_of
-from .meshes.second_order import with_corners_only
 
 PathLike: TypeAlias = "str | os.PathLike[str]"
 

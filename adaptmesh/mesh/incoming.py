@@ -26,7 +26,7 @@ class Content:
     Points are (n, 2) or (n, 3); fields are at the points or at the triangles; the metric is
     packed (m11, m12, m22). What is required are vertex numbers and rows of the edges. Seeds are
     points in holes (k, 2), and by number in the parts of regions. `others` are vertex numbers of
-    nodes of cells of higher order that are no corners, see `adaptmesh.io.meshes.second_order`;
+    nodes of cells of higher order that are no corners, see `adaptmesh.mesh.second_order`;
     periodic boundaries are a list as in `adaptmesh.mesh.periodic_sides`.
     """
 

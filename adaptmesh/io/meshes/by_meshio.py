@@ -32,10 +32,10 @@ from adaptmesh.files.located import located
 from adaptmesh.files.whole import read_bytes
 from adaptmesh.io.formats import mesh_suffix
 from adaptmesh.mesh.incoming import Content
+from adaptmesh.mesh.meshio_parts import DIMENSIONS, Parts, content_of, sets_of
 from adaptmesh.types import Array
 
 from . import meshio_process
-from .meshio_parts import DIMENSIONS, Parts, content_of, sets_of
 from .what_is_kept import what_is_lost
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"

@@ -19,9 +19,8 @@ from typing import Any
 import numpy as np
 
 from adaptmesh.errors import FormatError
+from adaptmesh.mesh.meshio_parts import Parts
 from adaptmesh.types import Array
-
-from .meshio_parts import Parts
 
 SECONDS, SECONDS_PER_MEGABYTE = 10, 10
 """Of processor time that a file may take."""
