@@ -8,17 +8,17 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .errors import DomainError
-from .types import Floats, Ints
+from .types import Array, Floats, Ints
 
 LARGEST = 1e75  # coordinate: its fourth power is still a double
 FLAT = 1e-9
 """Heights that differ by at most this share of the extent are rounding: the points are plane."""
 
 
-def read_only(array: NDArray[Any]) -> NDArray[Any]:
+def read_only(array: Array) -> Array:
     array.flags.writeable = False
     return array
 
@@ -77,7 +77,7 @@ def is_level(heights: Floats, xy: Floats) -> bool:
     return bool(half_width <= FLAT * half_extent)
 
 
-def plane_points(points: ArrayLike | None) -> NDArray[Any]:
+def plane_points(points: ArrayLike | None) -> Array:
     """Points (n, 2), also of (n, 3) that lie in a plane z = constant; or a `ValueError`."""
     out = np.asarray(() if points is None else points)
     if out.ndim != 2 or out.shape[1] != 3:
@@ -92,7 +92,7 @@ def plane_points(points: ArrayLike | None) -> NDArray[Any]:
     return out[:, :2]
 
 
-def rows(array: ArrayLike | None, what: str, columns: int) -> NDArray[Any]:
+def rows(array: ArrayLike | None, what: str, columns: int) -> Array:
     """An (n, columns) array, or a `ValueError`."""
     out = np.asarray(() if array is None else array)
     if out.size == 0:
@@ -102,7 +102,7 @@ def rows(array: ArrayLike | None, what: str, columns: int) -> NDArray[Any]:
     return out
 
 
-def numbers(array: ArrayLike | None, what: str, count: int, items: str) -> NDArray[Any]:
+def numbers(array: ArrayLike | None, what: str, count: int, items: str) -> Array:
     """A number for each of some items, 0 if none are given, or a `ValueError`."""
     out = np.asarray(() if array is None else array)
     if not out.size:
@@ -114,7 +114,7 @@ def numbers(array: ArrayLike | None, what: str, count: int, items: str) -> NDArr
     return out
 
 
-def frozen_integers(array: NDArray[Any], what: str) -> Ints:
+def frozen_integers(array: Array, what: str) -> Ints:
     """The array as integers of 32 bits, or a `ValueError` that names one that is none."""
     limits = np.iinfo(np.int32)
     if not np.issubdtype(array.dtype, np.integer):
@@ -130,7 +130,7 @@ def frozen_integers(array: NDArray[Any], what: str) -> Ints:
     return out
 
 
-def frozen_reals(array: NDArray[Any]) -> Floats:
+def frozen_reals(array: Array) -> Floats:
     """The array as real numbers."""
     out = np.array(array, np.float64, order="C")
     out.flags.writeable = False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 import metrics._core as _core
 
@@ -110,7 +110,7 @@ def _wrong_shape(what: str, shape: tuple[int, ...], count: int | None) -> str:
     return message
 
 
-def _flaw(value: NDArray[np.float64], asymmetry: float) -> str:
+def _flaw(value: Floats, asymmetry: float) -> str:
     """What is wrong with a size (), a packed tensor (3,) or a matrix (2, 2), and what to do."""
     shown = value.tolist()
     if not np.isfinite(value).all():

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.curves import Curve, Line
 from adaptmesh.domain.data import with_fields
@@ -13,7 +12,7 @@ from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.periodic import with_partners
 from adaptmesh.domain.periodic_corners import with_pairs
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.types import Floats
+from adaptmesh.types import Bools, Floats
 
 
 def frozen_domain(domain: Domain, mesh: Mesh, names: Iterable[str]) -> Domain:
@@ -34,7 +33,7 @@ def frozen_domain(domain: Domain, mesh: Mesh, names: Iterable[str]) -> Domain:
     return with_pairs(out, domain.periodic)
 
 
-def _of_segments(domain: Domain, edges: dict[str, Floats], rest: NDArray[np.bool_]) -> Domain:
+def _of_segments(domain: Domain, edges: dict[str, Floats], rest: Bools) -> Domain:
     ends = [domain.points[domain.segments[rest]], *edges.values()]
     isolated = np.setdiff1d(np.arange(len(domain.points)), domain.segments)
     places = np.concatenate([*(e.reshape(-1, 2) for e in ends), domain.points[isolated]])
@@ -52,7 +51,7 @@ def _of_segments(domain: Domain, edges: dict[str, Floats], rest: NDArray[np.bool
     ).with_frozen(segments=np.flatnonzero(domain.segment_is_frozen[rest]))
 
 
-def _of_curves(domain: Domain, edges: dict[str, Floats], rest: NDArray[np.bool_]) -> Domain:
+def _of_curves(domain: Domain, edges: dict[str, Floats], rest: Bools) -> Domain:
     curved = domain.curved
     kept = np.unique(curved.segment_curves[rest])
     tag_of = dict(zip(curved.segment_curves.tolist(), domain.segment_tags.tolist(), strict=True))

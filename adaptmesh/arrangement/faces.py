@@ -13,13 +13,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh._core import InputError, triangulate
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.containing import containing_triangles
 from adaptmesh.topology import components, edge_keys, half_edges
-from adaptmesh.types import Floats, Int64s
+from adaptmesh.types import Bools, Floats, Int64s
 
 from .record import point_text
 
@@ -75,7 +74,7 @@ class Faces:
         u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
         return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
 
-    def merge_across(self, edges: NDArray[np.bool_]) -> Int64s:
+    def merge_across(self, edges: Bools) -> Int64s:
         """Number the faces that are left without some edges; return the number of each old face."""
         return components(self.count, np.stack([self.left[edges], self.right[edges]], axis=1))
 

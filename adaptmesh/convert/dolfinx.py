@@ -15,13 +15,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.errors import FormatError
 from adaptmesh.mesh.incoming import Content
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.topology import edge_keys
-from adaptmesh.types import Int64s
+from adaptmesh.types import Floats, Int64s
 
 from .labels import incoming
 
@@ -126,7 +125,7 @@ def from_dolfinx(
     return incoming(content, "the mesh of dolfinx")
 
 
-def vertex_values_of_dolfinx(function: dolfinx.fem.Function) -> NDArray[np.float64]:
+def vertex_values_of_dolfinx(function: dolfinx.fem.Function) -> Floats:
     """Values of a Lagrange function at the points of the mesh that was given to `to_dolfinx`.
 
     Parameters

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,9 +13,9 @@ from adaptmesh.files.located import located
 from adaptmesh.mesh.incoming import Content, mesh_of
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.to_domain import with_interfaces
-from adaptmesh.types import Ints
+from adaptmesh.types import Array, Ints
 
-Fields = dict[str, NDArray[Any]]
+Fields = dict[str, Array]
 
 
 def incoming(content: Content, origin: str) -> Mesh:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.errors import FormatError
 from adaptmesh.mesh.incoming import Content
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.to_domain import with_interfaces
-from adaptmesh.types import Ints
+from adaptmesh.types import Array, Ints
 
 from .labels import incoming, names_of_tags
 
@@ -87,7 +86,7 @@ def from_netgen(m: netgen.meshing.Mesh | ngsolve.Mesh) -> Mesh:
 
 
 def _labelled(
-    m: netgen.meshing.Mesh, dim: int, elements: NDArray[Any]
+    m: netgen.meshing.Mesh, dim: int, elements: Array
 ) -> tuple[Ints, Ints, dict[str, int]]:
     """The elements of a dimension, from 0; the tag of each; the tag of each name."""
     nodes = elements["nodes"].astype(np.int32) - 1

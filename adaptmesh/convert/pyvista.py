@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from adaptmesh.errors import FormatError
 from adaptmesh.mesh.incoming import Content, refuse_cells
 from adaptmesh.mesh.mesh import Mesh
+from adaptmesh.types import Array
 from metrics import qualities
 
 from .labels import incoming, split_fields
@@ -87,7 +88,7 @@ def from_pyvista(grid: pv.UnstructuredGrid | pv.PolyData) -> Mesh:
     foreign = np.setdiff1d(kinds, [pv.CellType.TRIANGLE, pv.CellType.LINE, pv.CellType.VERTEX])
     refuse_cells({pv.CellType(k).name.lower(): int((kinds == k).sum()) for k in foreign})
 
-    def cells(kind: pv.CellType, width: int, key: str) -> tuple[NDArray[Any], NDArray[Any]]:
+    def cells(kind: pv.CellType, width: int, key: str) -> tuple[Array, Array]:
         corners = grid.cells_dict.get(int(kind), np.empty((0, width), np.int64))
         if key not in grid.cell_data:
             return corners, np.zeros(len(corners), np.int32)

@@ -7,6 +7,7 @@ turn by half a degree are as good as the curve.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -57,6 +58,13 @@ class SomeSides(NamedTuple):
         chosen = np.zeros(len(self.domain.segments), bool)
         chosen[self.segments] = True
         return cubic_pieces(self.domain, chosen)
+
+
+def some_sides(domain: DomainData, names: Sequence[str]) -> SomeSides:
+    """As `Domain.sides`."""
+    tags = [domain.tag_named(name) for name in names]
+    chosen = np.isin(domain.segment_tags, tags) if names else np.ones(len(domain.segments), bool)
+    return SomeSides(domain, np.flatnonzero(chosen).astype(np.int32))
 
 
 def cubic_pieces(domain: DomainData, chosen: Bools) -> CubicPieces:

@@ -9,23 +9,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from adaptmesh.checks import checked_number
 from adaptmesh.curves import Curve
-from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats
 from adaptmesh.value import contents
 
 from .background import TriangleMesh, background_mesh
-from .cubic_pieces import CubicPieces, SomeSides, cubic_pieces
+from .cubic_pieces import CubicPieces, SomeSides, cubic_pieces, some_sides
 from .data import DomainData, made_of
 from .from_curves import domain_of_curves
 from .from_rings import domain_of_rings
 from .from_segments import domain_of_segments
 from .frozen import domain_with_frozen
-from .given import Given
+from .given import Given, given_rectangle
 from .inputs import ByLabel
 from .measures import area_of, segments_within
-from .motion import Motion
+from .motion import chosen_motion
 from .names import domain_with_names
 from .naming import Chosen
 from .periodic_corners import domain_with_pair
@@ -164,15 +162,7 @@ class Domain(DomainData):
     @classmethod
     def rectangle(cls, x0: float, y0: float, x1: float, y1: float) -> Domain:
         """The rectangle [x0, x1] x [y0, y1]; its sides are named bottom, right, top, left."""
-        x0, y0, x1, y1 = (
-            checked_number(value, what)
-            for value, what in ((x0, "x0"), (y0, "y0"), (x1, "x1"), (y1, "y1"))
-        )
-        if not (x0 < x1 and y0 < y1):
-            raise DomainError(f"rectangle({x0}, {y0}, {x1}, {y1}): x0 < x1 and y0 < y1 are wanted")
-        corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
-        sides = {"bottom": [0], "right": [1], "top": [2], "left": [3]}
-        return cls(corners, [(0, 1), (1, 2), (2, 3), (3, 0)], names=sides)
+        return cls.of_given(given_rectangle(x0, y0, x1, y1))
 
     @classmethod
     def from_curves(
@@ -241,18 +231,8 @@ class Domain(DomainData):
         >>> round(ring.area / np.pi, 12)
         3.0
         """
-        data = domain_of_curves(
-            curves,
-            names=names,
-            holes=holes,
-            regions=regions,
-            tags=tags,
-            region_tags=region_tags,
-            points=points,
-            corner_angle=corner_angle,
-            join_tolerance=join_tolerance,
-        )
-        return cls.of_data(data)
+        options = names, holes, regions, tags, region_tags, points, corner_angle, join_tolerance
+        return cls.of_data(domain_of_curves(curves, *options))
 
     def with_names(self, names: ByLabel[Chosen]) -> Domain:
         """The same domain with names for sides that are chosen by where they are.
@@ -325,18 +305,7 @@ class Domain(DomainData):
         DomainError
             A name is not known, or something on one boundary has no image on the other.
         """
-        if translation is not None and rotation is not None:
-            raise DomainError("give a translation or a rotation, not both")
-        motion = None
-        if translation is not None:
-            motion = Motion.translation(translation)
-        elif rotation is not None:
-            motion = Motion.rotation(rotation, centre)
-        for other in self.periodic:
-            for name in {first, second} & {other.first, other.second}:
-                raise DomainError(
-                    f"{name!r} is periodic already, with {other.first!r} and {other.second!r}"
-                )
+        motion = chosen_motion(translation, rotation, centre)
         return self.of_data(domain_with_pair(self, first, second, motion, tolerance))
 
     def with_frozen(self, *names: str, segments: ArrayLike | None = None) -> Domain:
@@ -418,9 +387,7 @@ class Domain(DomainData):
         >>> [round(float(x), 9) for x in d]
         [0.5, 0.0]
         """
-        tags = [self.tag_named(name) for name in names]
-        chosen = np.isin(self.segment_tags, tags) if names else np.ones(len(self.segments), bool)
-        return SomeSides(self, np.flatnonzero(chosen).astype(np.int32))
+        return some_sides(self, names)
 
     def cubic_pieces(self) -> CubicPieces:
         """All sides as straight pieces and short cubics, see `sides`."""

@@ -20,7 +20,6 @@ from .naming import Chosen, chosen_tags, split_names
 
 def domain_of_curves(
     curves: Sequence[Curve],
-    *,
     names: ByLabel[Chosen] | None = None,
     holes: ArrayLike | str | None = None,
     regions: ByLabel[ArrayLike] | None = None,

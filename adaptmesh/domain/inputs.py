@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from adaptmesh.checks import check_is_mapping, checked_pairs, checked_points, read_only
 from adaptmesh.errors import DomainError
-from adaptmesh.types import Floats, Ints
+from adaptmesh.types import Floats, Index, Int64s, Ints
 from adaptmesh.value import FrozenMapping
 
 Label = str | int
@@ -181,7 +181,7 @@ def labelled(tags: NDArray[np.signedinteger]) -> dict[Label, list[int]]:
     return {number: rows.tolist() for number, rows in rows_of_each(tags).items() if number}
 
 
-def rows_of_each(numbers: NDArray[np.integer]) -> dict[int, NDArray[np.intp]]:
+def rows_of_each(numbers: Index) -> dict[int, NDArray[np.intp]]:
     """The rows with each number, ascending, in the order of the numbers."""
     order = np.argsort(numbers, kind="stable")
     ordered = numbers[order]
@@ -209,9 +209,9 @@ class JoinedRings:
     """
 
     points: Floats
-    segments: NDArray[np.int64]
-    ring: NDArray[np.int64]
-    given: NDArray[np.int64]
+    segments: Int64s
+    ring: Int64s
+    given: Int64s
     n_given: int
 
 

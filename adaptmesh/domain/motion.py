@@ -40,6 +40,17 @@ class Motion(Value):
         return points @ self.turn.T + self.shift
 
 
+def chosen_motion(
+    translation: ArrayLike | None, rotation: float | None, centre: ArrayLike
+) -> Motion | None:
+    """The motion that is given by a translation or a rotation; None if neither is."""
+    if translation is not None and rotation is not None:
+        raise DomainError("give a translation or a rotation, not both")
+    if translation is not None:
+        return Motion.translation(translation)
+    return None if rotation is None else Motion.rotation(rotation, centre)
+
+
 def _vector(value: ArrayLike, what: str) -> Floats:
     try:
         out = np.array(value, np.float64)

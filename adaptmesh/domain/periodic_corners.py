@@ -17,6 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats, Int64s
 
 from .data import D, DomainData, with_fields
@@ -32,6 +33,11 @@ def domain_with_pair(
     domain: DomainData, first: str, second: str, motion: Motion | None, tolerance: float | None
 ) -> DomainData:
     """The domain with two boundaries that correspond, each with the corners of the other."""
+    for other in domain.periodic:
+        for name in {first, second} & {other.first, other.second}:
+            raise DomainError(
+                f"{name!r} is periodic already, with {other.first!r} and {other.second!r}"
+            )
     tolerance = used_tolerance(domain.points, tolerance)
     numbers = (domain.sides_named(first), domain.sides_named(second))
     motion = pair_motion(domain.all_sides, numbers, (first, second), motion)

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.arrangement.faces import Faces, find_faces
 from adaptmesh.arrangement.noding import node, resolve_tolerance
@@ -21,7 +20,7 @@ from adaptmesh.arrangement.record import Repair, Repairs
 from adaptmesh.arrangement.winding import Passes, sum_passes
 from adaptmesh.errors import DomainError
 from adaptmesh.topology import unique_edges, used_points
-from adaptmesh.types import Floats, Int64s
+from adaptmesh.types import Bools, Floats, Int64s
 
 from .face_owners import owners_of_faces
 from .given import Given
@@ -99,7 +98,7 @@ def repaired_shapes(shapes: Sequence[Shape], tolerance: float | None) -> tuple[G
 def _record_what_is_dropped(
     points: Floats,
     edges: Int64s,
-    kept: NDArray[np.bool_],
+    kept: Bools,
     rings: Rings,
     passes: Passes,
     log: list[Repair],
@@ -130,7 +129,7 @@ def _record_what_is_dropped(
 def _given(
     points: Floats,
     edges: Int64s,
-    kept: NDArray[np.bool_],
+    kept: Bools,
     faces: Faces,
     owner: Int64s,
     shapes: Sequence[Shape],

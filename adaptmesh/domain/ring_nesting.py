@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.arrangement.faces import find_faces
 from adaptmesh.arrangement.record import Repair
 from adaptmesh.arrangement.winding import sum_passes
 from adaptmesh.errors import DomainError
-from adaptmesh.types import Floats, Int64s
+from adaptmesh.types import Bools, Floats, Int64s, Ints
 
 from .face_owners import owners_of_faces
 from .inputs import OR_REPAIR
@@ -34,8 +33,8 @@ def refuse_rings_out_of_place(
     shape: Shape,
     rings: list[Ring],
     points: Floats,
-    pieces: NDArray[np.int32],
-    along: NDArray[np.bool_],
+    pieces: Ints,
+    along: Bools,
     ring: Int64s,
 ) -> None:
     """Raise a `DomainError` if a hole is not in its shell, or parts or holes overlap.

@@ -6,12 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh._core import orient2d
-from adaptmesh.types import Floats
+from adaptmesh.types import Floats, Index
 
 
-def containing_triangles(
-    points: Floats, triangles: NDArray[np.integer], places: Floats
-) -> NDArray[np.intp]:
+def containing_triangles(points: Floats, triangles: Index, places: Floats) -> NDArray[np.intp]:
     """For each place (k, 2) the first triangle that it is in or on the border of; -1 for none.
 
     The triangles are counter-clockwise. Boxes are found in a tree, the rest is exact.

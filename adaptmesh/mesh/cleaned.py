@@ -7,14 +7,13 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh._core import orient2d
 from adaptmesh.domain.inputs import name_of_number
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.distance import near_points
 from adaptmesh.topology import unique_edges
-from adaptmesh.types import Int64s
+from adaptmesh.types import Index, Int64s
 
 from .data import M, MeshData
 
@@ -38,8 +37,8 @@ class OnceEach(NamedTuple):
 
 
 def edges_once(
-    edges: NDArray[np.integer],
-    tags: NDArray[np.integer],
+    edges: Index,
+    tags: Index,
     names: Mapping[str, int],
     error: type[Exception],
 ) -> OnceEach:

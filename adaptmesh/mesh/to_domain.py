@@ -6,7 +6,6 @@ import itertools
 from collections.abc import Callable, Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.checks import check_range
 from adaptmesh.curves import Curve
@@ -18,7 +17,7 @@ from adaptmesh.errors import DomainError
 from adaptmesh.mesh.seeds import hole_points, region_points
 from adaptmesh.mesh.validate.subject import Finding, Subject
 from adaptmesh.topology import edge_keys, regions_beside
-from adaptmesh.types import Ints
+from adaptmesh.types import Bools, Ints
 
 from .cleaned import with_edges_once
 from .data import MeshData
@@ -168,7 +167,7 @@ def with_interfaces(mesh: MeshData) -> tuple[Ints, Ints]:
 
 
 def _chains(
-    edges: Ints, tags: Ints, sides: Ints, is_stop: NDArray[np.bool_]
+    edges: Ints, tags: Ints, sides: Ints, is_stop: Bools
 ) -> Iterator[tuple[list[int], int]]:
     """Walk the edges in chains of vertices along which the tag and the sides stay the same.
 

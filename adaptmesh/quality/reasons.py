@@ -12,11 +12,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import metrics
 from adaptmesh.text import place_text
-from adaptmesh.types import Floats
+from adaptmesh.types import Bools, Floats
 from metrics import ControlSpace
 from metrics.measure.exact import edge_lengths
 from metrics.topology import mesh_edges
@@ -71,7 +70,7 @@ class Reasons:
         return {_key(a, b) for a, b in [*self._mesh.edges.tolist(), *border.tolist()]}
 
     @cached_property
-    def _held(self) -> NDArray[np.bool_]:
+    def _held(self) -> Bools:
         """Which vertices are on these."""
         held = np.zeros(len(self._mesh.points), dtype=bool)
         held[np.array(list(self._constrained), dtype=np.intp).ravel()] = True

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import metrics
 from adaptmesh.arrangement.faces import find_faces
@@ -16,7 +15,7 @@ from adaptmesh.domain.inputs import labelled, rows_of_each
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.distance import distance
 from adaptmesh.topology import regions_beside, used_points
-from adaptmesh.types import Floats, Int64s
+from adaptmesh.types import Bools, Floats, Int64s
 
 from .decimate import Decimated, decimate, orient
 from .small_islands import find_small_loops
@@ -151,7 +150,7 @@ class _Lines:
         rows = np.stack([self.tags, self.left, self.right], axis=1)
         return np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1)
 
-    def where(self, kept: NDArray[np.bool_]) -> _Lines:
+    def where(self, kept: Bools) -> _Lines:
         return _Lines(self.edges[kept], self.tags[kept], self.left[kept], self.right[kept])
 
 

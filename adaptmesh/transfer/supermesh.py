@@ -11,12 +11,11 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh._core import Overlay as core_Overlay
 from adaptmesh.errors import TransferError
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.types import Floats, Ints
+from adaptmesh.types import Array, Floats, Ints
 from adaptmesh.value import Value
 
 from .flux_limiter import bounds_on_triangles, limited
@@ -126,13 +125,13 @@ class Overlay(Value):
             fields = as_fields(values, self.old_mesh, space)
         else:
             fields = {"": as_field(values, self.old_mesh, space, "the field")}
-        new: dict[str, NDArray[Any]] = {}
+        new: dict[str, Array] = {}
         for kind in dict.fromkeys(field.space.name for field in fields.values()):
             of_kind = {name: f for name, f in fields.items() if f.space.name == kind}
             new.update(zip(of_kind, self._projected([*of_kind.values()], keep_bounds), strict=True))
         return {name: new[name] for name in fields} if isinstance(values, Mapping) else new[""]
 
-    def _projected(self, fields: Sequence[Field], keep_bounds: bool) -> list[NDArray[Any]]:
+    def _projected(self, fields: Sequence[Field], keep_bounds: bool) -> list[Array]:
         """Fields of one space, all their columns at once."""
         old, new = fields[0].space, Space(self.new_mesh, fields[0].space.name)
         columns = np.concatenate([field.columns for field in fields], axis=1)

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from typing import Any, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from adaptmesh.errors import TransferError
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.types import Floats, Ints
+from adaptmesh.types import Array, Floats, Ints
 
 from .location import (
     OUTSIDE,
@@ -37,7 +37,7 @@ def transfer(
     space: str | Mapping[str, str] | None = ...,
     keep_bounds: bool = ...,
     outside: float = ...,
-) -> dict[str, NDArray[Any]]: ...
+) -> dict[str, Array]: ...
 @overload
 def transfer(
     values: ArrayLike,
@@ -48,7 +48,7 @@ def transfer(
     space: str | None = ...,
     keep_bounds: bool = ...,
     outside: float = ...,
-) -> NDArray[Any]: ...
+) -> Array: ...
 def transfer(
     values: Any,
     old_mesh: Mesh,
@@ -135,7 +135,7 @@ def transfer(
 
 def interpolated(
     fields: Mapping[str, Field], old: Mesh, new: Mesh, outside: float
-) -> dict[str, NDArray[Any]]:
+) -> dict[str, Array]:
     """The old fields at the nodes of the new mesh."""
     if is_same_mesh(old, new):
         return {name: field.like(field.columns.copy()) for name, field in fields.items()}

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.types import Floats, Index
+from adaptmesh.types import Array, Bools, Floats, Index
 from metrics import ControlSpace
 from metrics.measure.exact import edge_lengths, qualities
 from metrics.topology import mesh_edges
@@ -62,7 +61,7 @@ class View:
         self.edges, self.sides = mesh_edges(self.triangles)
 
 
-def _touches(corners: Floats, bounds: Bounds) -> NDArray[np.bool_]:
+def _touches(corners: Floats, bounds: Bounds) -> Bools:
     """Which boxes around triangles or edges reach into the view."""
     low, high = corners.min(axis=1), corners.max(axis=1)
     return ((high >= bounds[:2]) & (low <= bounds[2:])).all(axis=1)
@@ -150,7 +149,7 @@ def paint_values(view: View, values: ArrayLike, cmap: str | None) -> Paint:
 
 
 def _as_reals(values: ArrayLike) -> Floats:
-    array: NDArray[Any] = np.asarray(values)
+    array: Array = np.asarray(values)
     if array.dtype.kind not in "biuf":
         raise ValueError(f"show is an array of {array.dtype}: expected real numbers")
     return np.where(np.ma.getmaskarray(np.ma.asarray(values)), np.nan, array.astype(float))

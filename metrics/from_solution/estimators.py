@@ -9,13 +9,13 @@ vertices; indicators serve singularities, rough data, and solutions without seco
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from metrics.background import Background
 from metrics.checks import as_numbers
 from metrics.errors import MetricError
 from metrics.topology import mesh_edges
-from metrics.types import Floats, Ints
+from metrics.types import Bools, Floats, Ints
 
 from .limits import Limits
 from .normalise import count_goal, scaled_to
@@ -171,7 +171,7 @@ def _check_finite(values: Floats, what: str, item: str) -> None:
         raise MetricError(f"{what} at {item} {i} is not finite: {values[i]}")
 
 
-def doerfler_marking(indicators: ArrayLike, fraction: float = 0.5) -> NDArray[np.bool_]:
+def doerfler_marking(indicators: ArrayLike, fraction: float = 0.5) -> Bools:
     """The fewest triangles that have this share of the squared error, as a mask (m,).
 
     Parameters
@@ -283,9 +283,7 @@ def metric_from_indicators(
     )
 
 
-def _factor_for(
-    error: float, eta: Floats, shares: Floats, marked: NDArray[np.bool_], order: float
-) -> float:
+def _factor_for(error: float, eta: Floats, shares: Floats, marked: Bools, order: float) -> float:
     """With x = factor * shares on the marked triangles, what is left of all squares is error²."""
     if not 0 < error < np.inf:
         raise MetricError(f"the error must be positive, not {error!r}")

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 import metrics._core as _core
 from metrics.checks import as_points
 from metrics.errors import MetricError
-from metrics.types import Floats, Ints
+from metrics.types import Bools, Floats, Ints
 
 from .cubics import Cubics
 from .geometry_input import Part, Pieces, parts_of
@@ -172,7 +172,7 @@ class Geometry:
             return segments, shares, feet, self._tangents[segments]
         return self._cubics.project(points, segments, shares)
 
-    def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
+    def contains(self, points: ArrayLike) -> Bools:
         """Whether points (n, 2) are inside, (n,); what is in an even number of rings is outside.
 
         Raises

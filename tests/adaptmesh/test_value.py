@@ -246,3 +246,19 @@ def test_dir_shows_what_is_public():
     for package in (am, metrics):
         assert set(package.__all__) == {name for name in dir(package) if not name.startswith("_")}
         assert all(hasattr(package, name) for name in dir(package))
+
+
+@pytest.mark.parametrize("make", [curved_domain, lambda: am.Domain.rectangle(0, 0, 1, 1)])
+def test_domains_and_their_meshes_are_frozen(make):
+    domain = make()
+    mesh = am.generate(domain, 0.5)
+    for thing in (domain, domain.with_names({"all": lambda x: x[:, 0] < 9}), mesh):
+        for name in ("points", "names", "periodic", "anything"):
+            with pytest.raises(AttributeError):
+                setattr(thing, name, None)
+        with pytest.raises(AttributeError):
+            del thing.names
+        with pytest.raises(ValueError, match="read-only"):
+            thing.points[0] = 0
+        with pytest.raises(TypeError):
+            thing.names["new"] = 1

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from adaptmesh._core import orient2d, sweep_border
 from adaptmesh.topology import HalfEdges
-from adaptmesh.types import Bools, Floats, Index
+from adaptmesh.types import Bools, Floats, Index, Ints
 
 if TYPE_CHECKING:
     from adaptmesh.mesh.data import MeshData
@@ -70,7 +70,7 @@ class Subject:
         return HalfEdges.of(self.mesh.triangles, len(self.mesh.points))
 
     @cached_property
-    def border_sweep(self) -> tuple[tuple[int, int], NDArray[np.int32]]:
+    def border_sweep(self) -> tuple[tuple[int, int], Ints]:
         """Two border edges that cross, or (-1, -1), and the triangles on the left of each."""
         ends = self.sides.ends(self.sides.border).astype(np.int32)
         return sweep_border(self.points, ends)

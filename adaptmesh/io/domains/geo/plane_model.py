@@ -33,8 +33,7 @@ curves that two surfaces share are only nearly the same."""
 
 def samples_of(curve: Curve) -> Floats:
     """Places on a curve, of which polygons are made to find seeds in."""
-    out: Floats = curve.point([0, 1] if curve.is_straight else _SAMPLES)
-    return out
+    return curve.point([0, 1] if curve.is_straight else _SAMPLES)
 
 
 class CurvesByNumber:
