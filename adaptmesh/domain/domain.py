@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -30,6 +31,7 @@ from .periodic_corners import domain_with_pair
 from .points import CurvePoints
 
 
+@dataclass(frozen=True, eq=False, repr=False, init=False)
 class Domain(DomainData):
     """A planar domain: straight segments between points, with holes, regions and names.
 
@@ -103,14 +105,12 @@ class Domain(DomainData):
         given = Given(points, segments, holes, regions, names, tags, region_tags)
         vars(self).update(contents(domain_of_segments(given)))
 
-    @property
+    @property  # type: ignore[misc]  # in place of the field, which it shows
     def points(self) -> Floats:
         """Its points, (n, 2).
 
-        Pairs of points of a domain with curves, ``points[segments]``, are chords; all the same
-        `metrics.Geometry`, and all else that takes a geometry, measures from the curves. This holds
-        for pairs and rows of them, not for what is computed of them; nor for the edges of a mesh,
-        ``mesh.points[mesh.edges]``.
+        Pairs of them, ``points[segments]``, are chords of curves, and `metrics.Geometry` measures
+        from the curves; not from those of a mesh, ``mesh.points[mesh.edges]``, nor from results.
         """
         return self._curve_points if self.curved.curves else vars(self)["points"]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,7 @@ LENGTH_BINS = np.concatenate([[0.0], 2.0 ** (np.arange(-12, 13) / 8), [np.inf]])
 QUALITY_BINS = np.linspace(0, 1, 21)
 
 
+@dataclass(frozen=True, eq=False)
 class Report(Figures):
     """How unit a mesh is in a metric; print it.
 
