@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from adaptmesh._core import InputError
 from adaptmesh._core import delaunay as core_delaunay
 from adaptmesh.errors import DomainError
+from adaptmesh.types import Floats, Ints
 
 __all__ = ["delaunay"]
 
 
-def delaunay(points: ArrayLike) -> NDArray[np.int32]:
+def delaunay(points: ArrayLike) -> Ints:
     """Compute the Delaunay triangulation of points.
 
     No circumcircle has a point in its interior. The predicates are exact, so that this holds for
@@ -72,7 +73,7 @@ def delaunay(points: ArrayLike) -> NDArray[np.int32]:
     return triangles
 
 
-def _checked(points: ArrayLike) -> NDArray[np.float64]:
+def _checked(points: ArrayLike) -> Floats:
     raw = np.asarray(points)
     if raw.dtype.kind not in "biuf":
         raise DomainError(f"points: expected real numbers, got an array of type {raw.dtype}")

@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import metrics
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.measures import inside_is_left_of
 from adaptmesh.domain.paths import points_on
 from adaptmesh.errors import DomainError
-from adaptmesh.types import Floats, Ints
+from adaptmesh.types import Bools, Floats, Ints
 from metrics import ControlSpace, tensor
 
 MAX_SAGITTA = 0.1
@@ -149,7 +148,7 @@ def _inscribed(domain: Domain, field: ControlSpace) -> _Polygon:
     return _Polygon(points, np.concatenate(triangles), np.concatenate(edges))
 
 
-def _is_coarse(points: Floats, tensors: Floats, chord: Ints, middle: Ints) -> NDArray[np.bool_]:
+def _is_coarse(points: Floats, tensors: Floats, chord: Ints, middle: Ints) -> Bools:
     """Mark chords (k, 2) longer than 1 and farther from the curve than `MAX_SAGITTA`."""
     a, b = chord.T
     height = points[middle] - 0.5 * (points[a] + points[b])

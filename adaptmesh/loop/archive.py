@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.domain.domain import Domain
 from adaptmesh.errors import AdaptmeshError, FormatError
@@ -30,7 +29,7 @@ from adaptmesh.files.whole import read_bytes, replace_files
 from adaptmesh.mesh.incoming import Content, mesh_of
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.transfer.spaces import sizes
-from adaptmesh.types import Floats
+from adaptmesh.types import Array, Floats
 from adaptmesh.value import FrozenMapping
 from metrics import tensor
 
@@ -167,14 +166,14 @@ def read_interval(path: Path, domain: Domain | None) -> Interval:
         )
 
 
-def _numbered(prefix: str, fields: Fields) -> dict[str, NDArray[Any]]:
+def _numbered(prefix: str, fields: Fields) -> dict[str, Array]:
     """Fields as arrays with a number: names of fields need not do for names of arrays."""
     return {f"{prefix}_{k}": values for k, values in enumerate(fields.values())}
 
 
 def _take_fields(
-    arrays: dict[str, NDArray[Any]], prefix: str, names: list[str], mesh: Mesh
-) -> FrozenMapping[str, NDArray[Any]]:
+    arrays: dict[str, Array], prefix: str, names: list[str], mesh: Mesh
+) -> FrozenMapping[str, Array]:
     """Take fields on a mesh out, by name, or raise for one that cannot be."""
     fields = {name: _take(arrays, f"{prefix}_{k}") for k, name in enumerate(names)}
     lengths = sizes(mesh).values()
@@ -186,7 +185,7 @@ def _take_fields(
     return FrozenMapping(fields)
 
 
-def _take_metric(arrays: dict[str, NDArray[Any]], name: str, mesh: Mesh) -> Floats:
+def _take_metric(arrays: dict[str, Array], name: str, mesh: Mesh) -> Floats:
     metric = _take(arrays, name)
     if metric.shape != (len(mesh.points), 3) or metric.dtype != np.float64:
         raise FormatError(f"a metric is {metric.dtype} of shape {metric.shape}")
@@ -201,11 +200,11 @@ class Decoded(NamedTuple):
     """What a file holds; the arrays are read-only."""
 
     mesh: Mesh
-    arrays: dict[str, NDArray[Any]]
+    arrays: dict[str, Array]
     notes: Notes
 
 
-def _encode(mesh: Mesh, arrays: Mapping[str, NDArray[Any]], notes: Mapping[str, Any]) -> bytes:
+def _encode(mesh: Mesh, arrays: Mapping[str, Array], notes: Mapping[str, Any]) -> bytes:
     """The content of a file. Notes are what JSON can hold."""
     content = {name: getattr(mesh, name) for name in MESH_ARRAYS} | dict(arrays)
     notes = {"names": dict(mesh.names), "region_names": dict(mesh.region_names), **notes}
@@ -226,20 +225,20 @@ def _decode(path: Path, domain: Domain | None) -> Decoded:
     return Decoded(mesh, arrays, notes)
 
 
-def _take(arrays: dict[str, NDArray[Any]], name: str) -> NDArray[Any]:
+def _take(arrays: dict[str, Array], name: str) -> Array:
     """Take the array of that name out."""
     if name not in arrays:
         raise FormatError(f"the array {name!r} is missing")
     return arrays.pop(name)
 
 
-def _refuse_left_over(arrays: Mapping[str, NDArray[Any]]) -> None:
+def _refuse_left_over(arrays: Mapping[str, Array]) -> None:
     """Raise for an array that no note names: the note that did is lost."""
     if arrays:
         raise FormatError(f"nothing in the notes says what the array {next(iter(arrays))!r} is")
 
 
-def _take_mesh(arrays: dict[str, NDArray[Any]], notes: Notes) -> Mesh:
+def _take_mesh(arrays: dict[str, Array], notes: Notes) -> Mesh:
     points, triangles, regions, edges, tags = (
         _take_mesh_array(arrays, name) for name in MESH_ARRAYS
     )
@@ -249,7 +248,7 @@ def _take_mesh(arrays: dict[str, NDArray[Any]], notes: Notes) -> Mesh:
     return mesh_of(Content(points, triangles, regions, edges, tags, names, region_names))
 
 
-def _take_mesh_array(arrays: dict[str, NDArray[Any]], name: str) -> NDArray[Any]:
+def _take_mesh_array(arrays: dict[str, Array], name: str) -> Array:
     values = _take(arrays, name)
     kinds, columns = "f" if name == "points" else "iu", _COLUMNS.get(name)
     shape = values.shape[:1] if columns is None else (*values.shape[:1], columns)

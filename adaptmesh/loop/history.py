@@ -7,14 +7,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, overload
 
-import numpy as np
-from numpy.typing import NDArray
-
 from adaptmesh.domain.domain import Domain
 from adaptmesh.errors import FormatError
 from adaptmesh.files.notes import Notes
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.types import Floats
+from adaptmesh.types import Floats, Int64s
 
 from . import view
 from .archive import OnDisk, damage_named, write_snapshot
@@ -86,7 +83,7 @@ class History(BaseHistory, Sequence[Iteration]):
         return (iteration.mesh for iteration in self.iterations)
 
     @property
-    def counts(self) -> NDArray[np.int64]:
+    def counts(self) -> Int64s:
         """The number of vertices of each mesh."""
         return counts_of(self.iterations)
 

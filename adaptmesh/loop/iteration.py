@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.domain.domain import Domain
 from adaptmesh.errors import FormatError
 from adaptmesh.files.notes import Notes
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.types import Floats
+from adaptmesh.types import Floats, Int64s
 from adaptmesh.value import FrozenMapping, Value
 
 from .archive import OnDisk
@@ -108,7 +107,7 @@ def file_name(number: int) -> str:
     return f"iteration_{number:04d}.npz"
 
 
-def counts_of(iterations: Sequence[Iteration]) -> NDArray[np.int64]:
+def counts_of(iterations: Sequence[Iteration]) -> Int64s:
     """The number of vertices of each mesh."""
     return np.array([iteration.n_points for iteration in iterations], np.int64)
 

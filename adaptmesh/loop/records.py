@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
-
-from numpy.typing import NDArray
 
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.types import Floats
+from adaptmesh.types import Array, Floats
 from adaptmesh.value import Value
 
 from .solution import Solution
 
-Fields = Mapping[str, NDArray[Any]]
+Fields = Mapping[str, Array]
 
 STAGES = ("adapt", "transfer", "solve", "metric")
 

@@ -13,13 +13,11 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.types import Floats
+from adaptmesh.types import Array, Floats
 from metrics import Background, absolute, combined
 from metrics.from_solution.optimal_metric import optimal_tensors
 from metrics.from_solution.recovery import largest_magnitude
@@ -51,7 +49,7 @@ class TargetInTime(MetricOptions):
         if self.in_time not in IN_TIME:
             raise ValueError(f"in_time={self.in_time!r} is none of {', '.join(map(repr, IN_TIME))}")
 
-    def hessians(self, mesh: Mesh, fields: Mapping[str, NDArray[Any]]) -> Hessians:
+    def hessians(self, mesh: Mesh, fields: Mapping[str, Array]) -> Hessians:
         """At one time; zero where a field is the same everywhere, as before anything happens."""
         chosen = choose_fields(self.fields, fields, mesh)
         varying = {name: v for name, v in chosen.items() if not is_constant(v)}

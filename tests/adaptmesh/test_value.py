@@ -162,10 +162,10 @@ def test_a_process_gives_the_mesh_that_this_one_gives():
 def stopped():
     error = ValueError("no such thing")
     return [
-        am.LoopError(am.History(), 3, "solve", error),
-        am.LoopInterrupted(am.History(), 3, "adapt"),
-        am.TransientError(am.TransientHistory(), 1, 2, "save", error),
-        am.TransientInterrupted(am.TransientHistory(), 1, 2, "advance"),
+        am.LoopError(am.History(), "solve", error, iteration=3),
+        am.LoopInterrupted(am.History(), "adapt", None, iteration=3),
+        am.TransientError(am.TransientHistory(), "save", error, sweep=1, interval=2),
+        am.TransientInterrupted(am.TransientHistory(), "advance", None, sweep=1, interval=2),
     ]
 
 
