@@ -1,4 +1,4 @@
-"""What users give, checked: arrays, converted once and never changed; numbers and functions."""
+"""Checks of arguments: arrays, converted once and never changed; numbers and functions."""
 
 from __future__ import annotations
 
@@ -92,13 +92,13 @@ def as_numbers(values: object, what: str) -> NDArray[np.generic]:
     return raw
 
 
-def number(name: str, value: Any, *, least: float = -np.inf) -> float:
-    """A finite real number, not below `least`."""
+def number(name: str, value: Any, *, minimum: float = -np.inf) -> float:
+    """A finite real number, not below `minimum`."""
     if not isinstance(value, Real) or isinstance(value, (bool, np.bool_)):
         raise MetricError(f"{name} must be a number, not {value!r}")
     out = float(value)
-    if not np.isfinite(out) or out < least:
-        bound = "" if least == -np.inf else f" and not below {least:g}"
+    if not np.isfinite(out) or out < minimum:
+        bound = "" if minimum == -np.inf else f" and not below {minimum:g}"
         raise MetricError(f"{name} must be finite{bound}, not {value!r}")
     return out
 
@@ -119,14 +119,14 @@ def h_limit(h_max: Any, name: str, smallest: float) -> float:
     return float(h_max)
 
 
-def chosen(name: str, value: Any, choices: tuple[str, ...]) -> Any:
+def one_of(name: str, value: Any, choices: tuple[str, ...]) -> Any:
     """One of some words."""
     if not isinstance(value, str) or value not in choices:
         raise MetricError(f"{name} must be one of {', '.join(map(repr, choices))}, not {value!r}")
     return value
 
 
-def evaluated(
+def evaluate(
     function: Callable[[Floats], ArrayLike], points: Floats, columns: tuple[int, ...], what: str
 ) -> Floats:
     """A user's function of points (n, 2): finite numbers (n, *columns), or an error with `what`."""
@@ -140,9 +140,9 @@ def evaluated(
             f"{points.shape}: {error}"
         ) from error
     out = np.ascontiguousarray(as_numbers(result, what), np.float64)
-    wanted = (len(points), *columns)
-    if out.shape != wanted:
-        raise MetricError(f"{what} must return an array of shape {wanted}, not {out.shape}")
+    expected = (len(points), *columns)
+    if out.shape != expected:
+        raise MetricError(f"{what}: expected an array of shape {expected}, got {out.shape}")
     finite = np.isfinite(out).all(axis=tuple(range(1, out.ndim)))
     if not finite.all():
         i = int(np.argmin(finite))

@@ -62,7 +62,7 @@ def _max(*arrays: Array) -> Array:
     return reduce(np.maximum, arrays)
 
 
-# Each function with the fewest and the most arguments it takes.
+# Each function with the minimum and the maximum of its arguments.
 _FUNCTIONS: dict[str, tuple[Callable[..., Array], int, int]] = {
     **{
         name: (getattr(np, name), 1, 1)
@@ -113,7 +113,7 @@ class Expression(ControlSpace):
     def __init__(self, *formulas: str) -> None:
         if not all(isinstance(formula, str) for formula in formulas):
             raise MetricError("a formula is a string, such as '0.01 + 0.1*hypot(x, y)'")
-        parts = [part for formula in formulas for part in _parsed(formula)]
+        parts = [part for formula in formulas for part in _parse(formula)]
         if len(parts) not in (1, 3):
             raise MetricError(
                 f"one formula (the size h) or three (m11, m12, m22) are needed, not {len(parts)}"
@@ -136,7 +136,7 @@ class Expression(ControlSpace):
         return Expression, self.formulas
 
 
-def _parsed(formula: str) -> list[Evaluator]:
+def _parse(formula: str) -> list[Evaluator]:
     """The formulas in a string, compiled: one, or several with commas between them."""
     text = formula.replace("\n", " ").strip()
     if not text:
@@ -147,14 +147,14 @@ def _parsed(formula: str) -> list[Evaluator]:
         body: ast.expr | None = ast.parse(text, mode="eval").body
     except SyntaxError as error:
         column = f" at column {error.offset}" if error.offset else ""
-        raise MetricError(f"the formula {_shown(text)} is not valid{column}: {error.msg}") from None
+        raise MetricError(f"the formula {_quote(text)} is not valid{column}: {error.msg}") from None
     except ValueError as error:
-        raise MetricError(f"the formula {_shown(text)} cannot be parsed: {error}") from None
+        raise MetricError(f"the formula {_quote(text)} cannot be parsed: {error}") from None
     except (MemoryError, RecursionError):
         body = None
     if body is None or _depth(body) > _MAX_DEPTH:
         raise MetricError(
-            f"the formula {_shown(text)} is nested deeper than {_MAX_DEPTH} operations; "
+            f"the formula {_quote(text)} is nested deeper than {_MAX_DEPTH} operations; "
             "a Python function can be given instead"
         )
     compiler = _Compiler(text)
@@ -162,7 +162,7 @@ def _parsed(formula: str) -> list[Evaluator]:
     return [compiler.compile(part) for part in parts]
 
 
-def _shown(text: str) -> str:
+def _quote(text: str) -> str:
     return repr(text if len(text) <= 80 else text[:77] + "...")
 
 
@@ -227,23 +227,22 @@ class _Compiler:
             self.refuse(node, "the comparisons are < <= > >= == !=")
         tests = [_COMPARISONS[type(op)] for op in node.ops]
 
-        def chain(*values: Array) -> Array:
+        def compare(*values: Array) -> Array:
             links = [test(*values[k : k + 2]) for k, test in enumerate(tests)]
             return reduce(np.logical_and, links)
 
-        return self.operation(node, chain, [node.left, *node.comparators])
+        return self.operation(node, compare, [node.left, *node.comparators])
 
     def call(self, node: ast.Call) -> Evaluator:
         if not isinstance(node.func, ast.Name) or node.func.id not in _FUNCTIONS:
             self.refuse(node.func, _known_words())
         if node.keywords:
             self.refuse(node, "functions take no keywords")
-        function, fewest, most = _FUNCTIONS[node.func.id]
-        if not fewest <= len(node.args) <= most:
-            wanted = str(fewest) if fewest == most else f"{fewest} to {most}"
-            self.refuse(
-                node, f"the number of arguments of {node.func.id} is {wanted}, not {len(node.args)}"
-            )
+        function, minimum, maximum = _FUNCTIONS[node.func.id]
+        if not minimum <= len(node.args) <= maximum:
+            counts = str(minimum) if minimum == maximum else f"{minimum} to {maximum}"
+            arguments = "argument" if maximum == 1 else "arguments"
+            self.refuse(node, f"{node.func.id} takes {counts} {arguments}, got {len(node.args)}")
         return self.operation(node, function, node.args)
 
     def operation(
@@ -257,7 +256,7 @@ class _Compiler:
         column = len(self.text.encode()[: node.col_offset].decode()) + 1
         word = ast.get_source_segment(self.text, node) or ""
         raise MetricError(
-            f"{_shown(word)} at column {column} of the formula {_shown(self.text)} is not "
+            f"{_quote(word)} at column {column} of the formula {_quote(self.text)} is not "
             f"understood: {remedy}"
         )
 

@@ -38,7 +38,7 @@ def graded(
         The H-shock is at most beta: (h_q / h_p)^(1 / l) <= beta, where l is the length of the edge
         with sizes that change geometrically along it, (l_p - l_q) / ln(l_p / l_q). Where it is
         more, M_q is multiplied by a number. Keeps the shape of every ellipse, and so must make all
-        its sizes smaller where only one is to be: dear where thin ellipses turn.
+        its sizes smaller where only one has to be: costly where thin ellipses turn.
     ``"metric"``
         M_q is intersected with M_p / (1 + l_p ln beta)^2: from p, all sizes grow in proportion.
         Thin ellipses stay as thin as they go.
@@ -59,7 +59,7 @@ def graded(
         The bound on growth from one unit edge to the next, above 1.
     law : {"mixed", "metric", "h-correction"}, optional
     tolerance : float, optional
-        Sizes are let be that exceed the bound on an edge by less, relative to themselves.
+        Violations of the bound on an edge that are smaller than this, relative, are ignored.
 
     Returns
     -------
@@ -70,7 +70,7 @@ def graded(
     Raises
     ------
     MetricError
-        For a metric that is none, arrays that do not fit, or another `beta` or `law`.
+        For an invalid metric, arrays that do not fit, or another `beta` or `law`.
 
     Notes
     -----
@@ -102,7 +102,7 @@ def graded(
 
 
 def check_growth(beta: float, law: str) -> None:
-    """Refuse a bound on growth, or a law, that is none."""
+    """Raise for an invalid bound on growth, or another law."""
     if law not in LAWS:
         raise MetricError(f"law must be one of {', '.join(map(repr, LAWS))}, not {law!r}")
     if not (isinstance(beta, Real) and 1 < beta < np.inf):

@@ -99,7 +99,7 @@ class MeshInterpolant:
 
     @property
     def tensors(self) -> Floats:
-        """Packed tensors (n, 3) at the vertices, a fresh array."""
+        """Packed tensors (n, 3) at the vertices, a new array."""
         return tensor.exp(self.logs)
 
     def graded_at_vertices(self, beta: float, law: str) -> Floats:

@@ -38,7 +38,7 @@ def pack(
     Returns
     -------
     (n, 3) array of float
-        A fresh array.
+        A new array.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def pack(
         or beyond 1e±75 in size.
     """
     if order not in ORDERS:
-        raise ValueError(f"order={order!r} is none of {', '.join(map(repr, ORDERS))}")
+        raise ValueError(f"order={order!r}: expected one of {', '.join(map(repr, ORDERS))}")
     if isinstance(values, np.ma.MaskedArray):  # np.asarray would unmask what is masked
         values = np.ma.filled(values.astype(np.float64), np.nan)
     raw = as_numbers(values, what)

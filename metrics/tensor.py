@@ -3,7 +3,7 @@
 A packed array is ``(n, 3)``: the entries m11, m12, m22 of n tensors. A tensor M asks for steps e
 with ``e @ M @ e == 1``: an ellipse of half axes (sizes) ``h = 1 / sqrt(eigenvalue)``.
 
-Every function is vectorised and compiled, takes anything that `pack` takes, returns fresh arrays
+Every function is vectorised and compiled, takes anything that `pack` takes, returns new arrays
 and raises `MetricError`, naming the first offending item, for input that is not positive definite.
 
 What a double can hold. The rounding of three entries blurs the larger size of a thin ellipse at a
@@ -177,7 +177,7 @@ def hypot(first: ArrayLike, second: ArrayLike) -> Floats:
     """
     s, t = as_packed(first), as_packed(second)
     if len(s) != len(t):
-        raise MetricError(f"as many tensors are needed on both sides, not {len(s)} and {len(t)}")
+        raise MetricError(f"expected as many tensors on both sides, got {len(s)} and {len(t)}")
     return _core.hypot(s, t)
 
 
@@ -272,7 +272,7 @@ def limit(
 
 
 def check_limits(h_min: float, h_max: float, max_anisotropy: float) -> None:
-    """Refuse bounds on sizes, or on their ratio, that are none."""
+    """Raise for invalid bounds on sizes, or on their ratio."""
     if not 0 <= h_min <= h_max or h_max == 0:
         raise MetricError(f"0 <= h_min <= h_max and 0 < h_max are needed, not {h_min}, {h_max}")
     if not max_anisotropy >= 1:
@@ -282,5 +282,5 @@ def check_limits(h_min: float, h_max: float, max_anisotropy: float) -> None:
 def _pair(first: ArrayLike, second: ArrayLike) -> tuple[Floats, Floats]:
     s, t = pack(first), pack(second)
     if len(s) != len(t):
-        raise MetricError(f"as many tensors are needed on both sides, not {len(s)} and {len(t)}")
+        raise MetricError(f"expected as many tensors on both sides, got {len(s)} and {len(t)}")
     return s, t

@@ -107,8 +107,8 @@ def adapt_loop(
     combine : {"intersection", "average"}, optional
         As for `metrics.metric_from_solution`.
     growth : float, optional
-        No mesh has more than so many times the vertices of the one before, or so many times less:
-        where features are is found on small meshes.
+        Bound on the ratio of the numbers of vertices of a mesh and the next, either way: features
+        are found on small meshes first.
     order : float, optional
         The power of the number of vertices with which the error falls, for `error` only, until
         meshes of different sizes tell. 1 for the interpolation error in L^p; other estimates that
@@ -133,7 +133,7 @@ def adapt_loop(
         for, such as a field that only the new `solve` returns, `solve` is called again on the last
         mesh, with ``previous=None``.
     keep_last : int, optional
-        Keep only so many of the last meshes in memory, and read the others from `save` if they are
+        The number of last meshes kept in memory; the others are read from `save` when they are
         asked for.
     callback : callable, optional
         Called with each `Iteration` when it is complete.
@@ -177,7 +177,7 @@ def adapt_loop(
         check_reachable(target_vertices, mesh, h_max)
     rule = StoppingRule(tolerance, max_iterations, budget)
     adaptation = Adaptation(Solve(solve), mesh, target, transfer)
-    history = _resumed(resume, mesh, target, rule)
+    history = _resume(resume, mesh, target, rule)
     folder = prepare_folder(save, history, resume)
     if folder is not None and is_saved_in(folder, resume) and _is_estimated_again(history):
         history.append(folder)
@@ -185,7 +185,7 @@ def adapt_loop(
     while True:
         number = len(history)
         with Step(history, LoopError, LoopInterrupted, "stopping rule", iteration=number) as step:
-            ended = rule.ended(history, target, time.monotonic() - started)
+            ended = rule.end(history, target, time.monotonic() - started)
             if ended is None:
                 try:
                     history = history.with_iteration(adaptation.next(history, step))
@@ -239,7 +239,7 @@ class Adaptation:
                 unit = _unit_fraction(mesh, field)
             if self.solve.takes_previous and history.for_options:
                 with step.timed("transfer"):
-                    previous = self._transferred(last.solution, last.mesh, mesh)
+                    previous = self._transfer(last.solution, last.mesh, mesh)
         with step.timed("solve"):
             solution = check_solution(self.solve(mesh, previous), mesh)
         with step.timed("metric"):
@@ -254,13 +254,13 @@ class Adaptation:
             kept=Snapshot(mesh, solution, metric),
         )
 
-    def _transferred(self, solution: Solution, old: Mesh, new: Mesh) -> Any:
+    def _transfer(self, solution: Solution, old: Mesh, new: Mesh) -> Any:
         spaces = {name: space_of(values, old) for name, values in solution.fields.items()}
         fields = transfer_fields(solution.fields, old, new, method=self.transfer, space=spaces)
         return solution.as_returned(fields)
 
 
-def _resumed(
+def _resume(
     resume: History | PathLike | None, mesh: Mesh, target: Target, rule: StoppingRule
 ) -> History:
     """The history to go on with: empty, or an earlier one that began with this mesh."""

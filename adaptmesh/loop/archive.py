@@ -71,7 +71,7 @@ def write_list(path: Path, content: Mapping[str, Any]) -> None:
 
 def read_list(path: Path) -> Notes:
     """Read the list of a history, if it is of this version."""
-    with damage_named(path):
+    with name_damage(path):
         content = Notes(read_json(read_bytes(path)))
         if content.count("version") != VERSION:
             raise FormatError(f"it is of version {content.count('version')}; this reads {VERSION}")
@@ -79,7 +79,7 @@ def read_list(path: Path) -> Notes:
 
 
 @contextmanager
-def damage_named(path: Path) -> Iterator[None]:
+def name_damage(path: Path) -> Iterator[None]:
     """Errors of what a file holds, with its name."""
     try:
         yield
@@ -97,7 +97,7 @@ def damage_named(path: Path) -> Iterator[None]:
 def write_snapshot(path: Path, snapshot: Snapshot) -> None:
     """Write the file of an iteration."""
     solution = snapshot.solution
-    arrays = _numbered("field", solution.fields)
+    arrays = _number_fields("field", solution.fields)
     arrays["metric"] = snapshot.metric
     if solution.metric is not None:
         arrays["given"] = solution.metric
@@ -113,7 +113,7 @@ def write_snapshot(path: Path, snapshot: Snapshot) -> None:
 def read_snapshot(path: Path, domain: Domain | None) -> Snapshot:
     """Read the file of an iteration; its mesh gets this domain."""
     mesh, arrays, notes = _decode(path, domain)
-    with damage_named(path):
+    with name_damage(path):
         fields = _take_fields(arrays, "field", notes.names("fields"), mesh)
         is_bare = notes.flag("is_bare")
         if is_bare and list(fields) != [UNNAMED]:
@@ -130,7 +130,7 @@ def write_interval(path: Path, interval: Interval) -> None:
     mappings: dict[str, Fields] = {name: getattr(interval, name) for name in INTERVAL_FIELDS}
     arrays = {"times": interval.times}
     for name, fields in mappings.items():
-        arrays |= _numbered(name, fields)
+        arrays |= _number_fields(name, fields)
     notes = {
         "start": interval.start,
         "end": interval.end,
@@ -144,7 +144,7 @@ def write_interval(path: Path, interval: Interval) -> None:
 def read_interval(path: Path, domain: Domain | None) -> Interval:
     """Read the file of an interval; its mesh gets this domain."""
     mesh, arrays, notes = _decode(path, domain)
-    with damage_named(path):
+    with name_damage(path):
         mappings = {
             name: _take_fields(arrays, name, notes.names(name), mesh) for name in INTERVAL_FIELDS
         }
@@ -166,7 +166,7 @@ def read_interval(path: Path, domain: Domain | None) -> Interval:
         )
 
 
-def _numbered(prefix: str, fields: Fields) -> dict[str, Array]:
+def _number_fields(prefix: str, fields: Fields) -> dict[str, Array]:
     """Fields as arrays with a number: names of fields need not do for names of arrays."""
     return {f"{prefix}_{k}": values for k, values in enumerate(fields.values())}
 
@@ -216,7 +216,7 @@ def _encode(mesh: Mesh, arrays: Mapping[str, Array], notes: Mapping[str, Any]) -
 def _decode(path: Path, domain: Domain | None) -> Decoded:
     """Read a file; its mesh gets this domain."""
     data = read_bytes(path)
-    with damage_named(path):
+    with name_damage(path):
         arrays = read_npz(data)
         for array in arrays.values():
             array.flags.writeable = False

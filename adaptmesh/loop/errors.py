@@ -28,10 +28,10 @@ class LoopStopped(BaseException):
         super().__init__(f"{where}, {stage}: {what}")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _unpickled, (type(self), self.args), vars(self)
+        return _unpickle, (type(self), self.args), vars(self)
 
 
-def _unpickled(kind: type[BaseException], args: tuple[Any, ...]) -> BaseException:
+def _unpickle(kind: type[BaseException], args: tuple[Any, ...]) -> BaseException:
     """An error of this kind, made without its constructor; its attributes are set afterwards."""
     return kind.__new__(kind, *args)
 

@@ -14,7 +14,7 @@ from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.types import Floats, Int64s
 
 from . import view
-from .archive import OnDisk, damage_named, write_snapshot
+from .archive import OnDisk, name_damage, write_snapshot
 from .base_history import BaseHistory, PathLike
 from .iteration import Iteration, counts_of, errors_of, file_name
 from .records import Fields
@@ -106,7 +106,7 @@ class History(BaseHistory, Sequence[Iteration]):
         return replace(self, reason=reason, converged=converged)
 
     def left_on_disk(self, folder: Path, keep_last: int) -> History:
-        """The same history, with no more than so many of the last snapshots in memory."""
+        """The same history, with no more than the last `keep_last` snapshots in memory."""
         domain, older = self.mesh.domain, len(self) - keep_last
         iterations = tuple(
             it
@@ -169,7 +169,7 @@ class History(BaseHistory, Sequence[Iteration]):
 
     @classmethod
     def _of_list(cls, content: Notes, path: Path, domain: Domain | None) -> History:
-        with damage_named(path):
+        with name_damage(path):
             numbers = [Notes(n) for n in content.items("iterations")]
             history = cls(
                 tuple(Iteration.of_numbers(n, path.parent, domain) for n in numbers),

@@ -110,13 +110,13 @@ def _option_as_text(option: Any) -> str:
     if isinstance(option, (int, float, np.number)):
         return f"{float(option):.17g}"
     if isinstance(option, Mapping):
-        return _joined({name: option[name] for name in sorted(option)})
+        return _join({name: option[name] for name in sorted(option)})
     if is_dataclass(option):
-        return _joined({field.name: getattr(option, field.name) for field in fields(option)})
+        return _join({field.name: getattr(option, field.name) for field in fields(option)})
     if isinstance(option, Sequence) and not isinstance(option, str):
         return ", ".join(map(_option_as_text, option))
     return str(option)
 
 
-def _joined(options: Mapping[str, Any]) -> str:
+def _join(options: Mapping[str, Any]) -> str:
     return ", ".join(f"{name}={_option_as_text(value)}" for name, value in options.items())

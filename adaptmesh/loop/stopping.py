@@ -13,10 +13,10 @@ from .history import History
 from .iteration import Iteration
 from .target import Target
 
-AGREE = 3  # so many iterations in a row that agree are the end
-COARSENED = 1.1  # a mesh with so many times the vertices of another is finer
+AGREE = 3  # iterations in a row that agree end the loop
+COARSENED = 1.1  # a mesh with more than this many times the vertices of another is finer
 FAR_BELOW = 0.5  # of the error asked for: a mesh that could be coarsened further
-LOST = 2.0  # an error that is so many times smaller on a coarser mesh is not seen there
+LOST = 2.0  # an error that is smaller on a coarser mesh by this factor is not seen there
 UNIFORM = 0.05  # how near to the vertices asked for a mesh of one size is taken as it is
 
 
@@ -68,7 +68,7 @@ class StoppingRule:
             raise ValueError(f"tolerance={self.tolerance!r}: must not be negative")
         expect_whole("max_iterations", self.max_iterations, 0)
 
-    def ended(self, history: History, target: Target, elapsed: float) -> History | None:
+    def end(self, history: History, target: Target, elapsed: float) -> History | None:
         """The history with its end, or None if there is to be another iteration."""
         if not history.for_options:
             return None

@@ -83,7 +83,7 @@ class Target(MetricOptions):
         if solution.metric is None:
             return self._from_fields(mesh, solution, earlier)
         count = self._count(mesh, solution.errors, earlier)
-        errors = dict(solution.errors) or self._monitored(mesh, solution)
+        errors = dict(solution.errors) or self._monitor(mesh, solution)
         metric = solution.metric
         if count is None:
             metric = self.limits.applied(metric, mesh.points, mesh.triangles)
@@ -138,7 +138,7 @@ class Target(MetricOptions):
         )
         return metric, errors
 
-    def _monitored(self, mesh: Mesh, solution: Solution) -> dict[str, float]:
+    def _monitor(self, mesh: Mesh, solution: Solution) -> dict[str, float]:
         """Errors of fields beside a metric, to which the mesh is adapted: they tell convergence.
 
         The number of vertices, which is asked for, is met long before.

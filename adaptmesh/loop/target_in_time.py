@@ -47,7 +47,9 @@ class TargetInTime(MetricOptions):
         super().__post_init__()
         check_count(self.target_vertices)
         if self.in_time not in IN_TIME:
-            raise ValueError(f"in_time={self.in_time!r} is none of {', '.join(map(repr, IN_TIME))}")
+            raise ValueError(
+                f"in_time={self.in_time!r}: expected one of {', '.join(map(repr, IN_TIME))}"
+            )
 
     def hessians(self, mesh: Mesh, fields: Mapping[str, Array]) -> Hessians:
         """At one time; zero where a field is the same everywhere, as before anything happens."""

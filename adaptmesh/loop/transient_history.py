@@ -13,7 +13,7 @@ from adaptmesh.domain.domain import Domain
 from adaptmesh.errors import FormatError
 from adaptmesh.files.notes import Notes
 
-from .archive import damage_named, read_interval, write_interval
+from .archive import name_damage, read_interval, write_interval
 from .base_history import BaseHistory
 from .records import Interval, Seconds
 
@@ -81,7 +81,7 @@ class TransientHistory(BaseHistory):
 
     @classmethod
     def _of_list(cls, content: Notes, path: Path, domain: Domain | None) -> TransientHistory:
-        with damage_named(path):
+        with name_damage(path):
             counts = content.counts("intervals")
             if 0 in counts:
                 raise FormatError(f"sweep {counts.index(0)} has no intervals")

@@ -169,7 +169,7 @@ def transient_loop(
     )
     check_reachable(target_vertices, mesh, limits.h_max)
     solver = _Solver(initial, advance, transfer, keep_bounds)
-    history = _resumed(resume, mesh, ends, target)
+    history = _resume(resume, mesh, ends, target)
     folder = prepare_folder(save, history, resume)
     fitted: list[Background] = []
     for done in range(len(history.records), int(sweeps) * n):
@@ -187,7 +187,7 @@ def transient_loop(
                 with step.timed("adapt"):
                     here = adapt(before[number].mesh, fitted[number])
             first = solver.first(here, history.intervals[-1] if number else None, step)
-            interval = solver.advanced(here, first, ends[number : number + 2], target, step)
+            interval = solver.advance_interval(here, first, ends[number : number + 2], target, step)
             step.history = history = history.with_interval(interval, sweep)
             if folder is not None:
                 step.stage = "save"
@@ -230,7 +230,7 @@ class _Solver:
             )
             return replace(check_solution(there, mesh), is_bare=before.is_bare)
 
-    def advanced(
+    def advance_interval(
         self,
         mesh: Mesh,
         first: Solution,
@@ -320,7 +320,7 @@ def _check_times(times: ArrayLike) -> Floats:
     return ends
 
 
-def _resumed(
+def _resume(
     resume: TransientHistory | PathLike | None, mesh: Mesh, ends: Floats, target: TargetInTime
 ) -> TransientHistory:
     """The history to go on with: empty, or an earlier one of this mesh, times and options."""

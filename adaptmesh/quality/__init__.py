@@ -1,1 +1,1 @@
-"""What was asked of a mesh, what was met, and why not where it was not."""
+"""How well a mesh fits its metric, and why not better."""

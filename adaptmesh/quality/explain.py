@@ -55,13 +55,13 @@ class Explanation(Value):
 
     @property
     def edge_causes(self) -> Mapping[Cause, int]:
-        """How many of `edges` have each cause, most first."""
-        return _counted(self.edges)
+        """How many of `edges` have each cause, the most frequent first."""
+        return _count_causes(self.edges)
 
     @property
     def triangle_causes(self) -> Mapping[Cause, int]:
-        """How many of `triangles` have each cause, most first."""
-        return _counted(self.triangles)
+        """How many of `triangles` have each cause, the most frequent first."""
+        return _count_causes(self.triangles)
 
     def __str__(self) -> str:
         lines = [f"{self.n_edges} edges are not unit"]
@@ -78,7 +78,7 @@ class Explanation(Value):
 
 
 def explain(
-    mesh: Mesh, metric: Any, *, least_quality: float = BAD_QUALITY, most: int = 1000
+    mesh: Mesh, metric: Any, *, min_quality: float = BAD_QUALITY, max_items: int = 1000
 ) -> Explanation:
     """Say why edges are not unit and triangles are bad.
 
@@ -88,7 +88,7 @@ def explain(
     short constraint       a piece of a segment of the domain, itself or a side of the triangle, is
                            shorter than 1/√2
     sharp angle            (triangles) two constraints meet at less than 29° in the metric, the
-                           least angle of a triangle with unit sides
+                           smallest angle of a triangle with unit sides
     crowded constraints    all corners are on constraints: nothing can be moved (of triangles asked
                            last)
     metric jump            along an edge sizes change by a factor of more than 1.5 over a distance
@@ -102,10 +102,10 @@ def explain(
     mesh : Mesh
     metric : number, callable, control space, or array_like
         As for `measure`.
-    least_quality : float
-        Triangles of lesser quality are bad.
-    most : int
-        So many edges, and triangles, are looked into at most, the worst first.
+    min_quality : float
+        Triangles of lower quality are bad.
+    max_items : int
+        The number of edges, and of triangles, that are looked into, the worst first.
 
     Returns
     -------
@@ -125,24 +125,24 @@ def explain(
     ['crowded constraints', 'short constraint']
     """
     check_measurable(mesh)
-    if most < 0:
-        raise ValueError(f"most={most}: a number of edges and triangles is not negative")
+    if max_items < 0:
+        raise ValueError(f"max_items={max_items}: expected 0 or more")
     field = control_space_on(mesh, metric)
     edges, sides = mesh_edges(mesh.triangles)
     lengths = edge_lengths(mesh.points, edges, field)
     quality = qualities(lengths[sides], metric_areas(mesh.points, mesh.triangles, field))
     off = np.flatnonzero((lengths < SHORTEST) | (lengths > LONGEST))
     off = off[np.argsort(ratio_to_unit(lengths[off]), kind="stable")]
-    bad = np.flatnonzero(quality < least_quality)
+    bad = np.flatnonzero(quality < min_quality)
     bad = bad[np.argsort(quality[bad], kind="stable")]
     reasons = Reasons(mesh, field)
     return Explanation(
-        edges=edge_entries(mesh, edges, lengths, off[:most], reasons),
-        triangles=triangle_entries(mesh, quality, bad[:most], reasons, least_quality),
+        edges=edge_entries(mesh, edges, lengths, off[:max_items], reasons),
+        triangles=triangle_entries(mesh, quality, bad[:max_items], reasons, min_quality),
         n_edges=len(off),
         n_triangles=len(bad),
     )
 
 
-def _counted(items: tuple[WorstEdge, ...] | tuple[WorstTriangle, ...]) -> Mapping[Cause, int]:
+def _count_causes(items: tuple[WorstEdge, ...] | tuple[WorstTriangle, ...]) -> Mapping[Cause, int]:
     return FrozenMapping(dict(Counter(item.reason.cause for item in items).most_common()))

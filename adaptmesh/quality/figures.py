@@ -50,41 +50,7 @@ class WorstTriangle(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Figures(Value):
-    """How unit a mesh is in a metric.
-
-    With l the metric length of an edge, over all edges, and Q the quality of a triangle,
-    4 sqrt(3) area_M / (sum of the three l²), which is 1 for the unit equilateral one:
-
-    Attributes
-    ----------
-    length_rule : str
-        How lengths were measured.
-    n_points, n_triangles, n_edges : int
-    unit_fraction, short_fraction, long_fraction : float
-        Share of the edges with l in [1/√2, √2], below, and above.
-    efficiency_index : float
-        1 - mean (1 - min(l, 1/l))², after Borouchaki et al. 1997.
-    efficiency_index_frey_george : float
-        exp(mean(min(l, 1/l) - 1)), after Frey and George; MMG reports it too (Dobrzynski, RT-422).
-    length_min, length_mean, length_max : float
-    length_quantiles : mapping of float to float
-    quality_min, quality_p1, quality_mean : float
-        The least, the first percentile, and the mean of Q.
-    complexity : float
-        The integral of √det M over the mesh.
-    ideal_triangles : float
-        (4/√3) complexity: so many unit equilateral triangles have the same metric area.
-    count_ratio : float
-        Triangles for each ideal one.
-    length_histogram, quality_histogram : Histogram
-    worst_edges : tuple of WorstEdge
-        Those whose l is farthest from 1, by ratio; if not unit, with the reason, see `explain`.
-    worst_triangles : tuple of WorstTriangle
-        Those of least quality.
-    border : str
-        How many corners of the border were found, and to what tolerance, if the domain was found
-        from a mesh (see `Mesh.to_domain`); else empty.
-    """
+    """The figures of a `Report`, where each is explained."""
 
     length_rule: str
     n_points: int

@@ -1,7 +1,7 @@
-"""Why an edge is not unit, or a triangle is bad: criteria that are measured, in the order tried.
+"""Why an edge is not unit, or a triangle is bad: criteria that are measured, in order.
 
 A unit edge is from 1/√2 to √2 long; the flattest triangle of unit sides (√2, √2, 1/√2) has an angle
-of 29°. So much is possible; the reasons name what can stand against it.
+of 29°. The reasons name what prevents that.
 """
 
 from __future__ import annotations
@@ -168,13 +168,13 @@ class Reasons:
 
     def _unresolved(self, edges: list[tuple[int, int]]) -> Reason | None:
         """The metric changes, or turns, far within the edge."""
-        most = 0.0
+        largest = 0.0
         for a, b in edges:
             logs = self._logs(a, b, np.linspace(0, 1, SAMPLES))
-            most = max(most, float(_changes(logs, logs[[SAMPLES // 2]]).max()))
-        if np.exp(most) < TURNED:
+            largest = max(largest, float(_changes(logs, logs[[SAMPLES // 2]]).max()))
+        if np.exp(largest) < TURNED:
             return None
-        return Reason(Cause.UNRESOLVED, f"within an edge sizes change by {np.exp(most):.3g}")
+        return Reason(Cause.UNRESOLVED, f"within an edge sizes change by {np.exp(largest):.3g}")
 
     def _at(self, v: int, other: int) -> str:
         """The place of a vertex, told from another."""

@@ -1,4 +1,4 @@
-"""How unit is a mesh? What was asked, what was met, and where it was met least."""
+"""How far a mesh is from a unit mesh of a metric, in figures, and where it is worst."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SHORTEST, LONGEST = 2**-0.5 * (1 - 1e-9), 2**0.5 * (1 + 1e-9)
 LENGTH_RULE = "Gauss quadrature of the metric along the edge"
 QUANTILES = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 WORST = 5  # edges and triangles named
-BAD_QUALITY = 0.3  # triangles below want a reason
+BAD_QUALITY = 0.3  # triangles below it get a reason
 
 # Each bin but the first and last is an eighth of an octave, so that the unit band is eight bins.
 LENGTH_BINS = np.concatenate([[0.0], 2.0 ** (np.arange(-12, 13) / 8), [np.inf]])
@@ -57,18 +57,18 @@ class Report(Figures):
     length_min, length_mean, length_max : float
     length_quantiles : mapping of float to float
     quality_min, quality_p1, quality_mean : float
-        The least, the first percentile, and the mean of Q.
+        The minimum, the first percentile, and the mean of Q.
     complexity : float
         The integral of √det M over the mesh.
     ideal_triangles : float
-        (4/√3) complexity: so many unit equilateral triangles have the same metric area.
+        (4/√3) complexity: the number of unit equilateral triangles of the same metric area.
     count_ratio : float
         Triangles for each ideal one.
     length_histogram, quality_histogram : Histogram
     worst_edges : tuple of WorstEdge
         Those whose l is farthest from 1, by ratio; if not unit, with the reason, see `explain`.
     worst_triangles : tuple of WorstTriangle
-        Those of least quality.
+        Those of lowest quality.
     border : str
         How many corners of the border were found, and to what tolerance, if the domain was found
         from a mesh (see `Mesh.to_domain`); else empty.

@@ -37,7 +37,7 @@ PASSES = 3
 """What a pass holds back, because the bounds were taken up, is tried again in the next."""
 
 
-def limited(
+def limit(
     space: Space, matrix: Any, moments: Floats, projected: Floats, low: Floats, high: Floats
 ) -> Floats:
     """The projection between `low` and `high`, both (size, k), at the nodes."""
@@ -68,10 +68,10 @@ def _shares(fluxes: Floats, i: Any, j: Any, room_above: Floats, room_below: Floa
     return np.where(fluxes > 0, np.minimum(up[i], down[j]), np.minimum(down[i], up[j]))
 
 
-def _fraction(room: Floats, wanted: Floats) -> Floats:
-    """How much of what is wanted there is room for, from 0 to 1."""
+def _fraction(room: Floats, amount: Floats) -> Floats:
+    """The share of an amount that there is room for, from 0 to 1."""
     room = np.maximum(room, 0)
-    return np.divide(room, wanted, out=np.ones_like(room), where=wanted > room)
+    return np.divide(room, amount, out=np.ones_like(room), where=amount > room)
 
 
 def _net(fluxes: Floats, i: Any, j: Any, size: int) -> Floats:
@@ -108,7 +108,7 @@ def _bernstein_coefficients(space: Space, nodal: Floats) -> Floats:
 
 
 def bounds_on_triangles(space: Space, columns: Floats) -> tuple[Floats, Floats]:
-    """The least and the largest value of fields on each triangle, both (m, k)."""
+    """The minimum and the maximum of fields on each triangle, both (m, k)."""
     values = columns[space.nodes_of_triangles]
     if space.degree == 2:
         values = np.concatenate([values, _extremes(values)], axis=1)

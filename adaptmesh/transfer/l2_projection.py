@@ -92,7 +92,7 @@ def _chebyshev(matrix: Any, diagonal: Floats, moments: Floats, degree: int) -> F
 
 
 def _eigenvalue_bounds(degree: int) -> tuple[float, float]:
-    """The least and the largest eigenvalue of D^-1 M on a triangle: 1/2 and 2 for P1."""
+    """The smallest and the largest eigenvalue of D^-1 M on a triangle: 1/2 and 2 for P1."""
     local = MASSES[degree]
     scale = np.sqrt(np.diag(local))
     values = np.linalg.eigvalsh(local / np.outer(scale, scale))

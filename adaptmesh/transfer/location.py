@@ -1,4 +1,4 @@
-"""Where points of one mesh are in another, and what both have to be for that."""
+"""Location of points of one mesh in another, and checks of both."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ REMEDIES = {
 
 
 @dataclass(frozen=True)
-class Located:
+class MeshLocator:
     """A mesh, what it is called in errors, and what finds points in its triangles."""
 
     mesh: Mesh
@@ -36,7 +36,7 @@ class Located:
     locator: Locator
 
 
-def located(mesh: Mesh, which: str) -> Located:
+def make_locator(mesh: Mesh, which: str) -> MeshLocator:
     """The "old" or the "new" mesh, with what finds points in it.
 
     Raises
@@ -60,13 +60,13 @@ def located(mesh: Mesh, which: str) -> Located:
             f"{area:g}: {remedy}"
         )
     try:
-        return Located(mesh, which, Locator(mesh.points, mesh.triangles))
+        return MeshLocator(mesh, which, Locator(mesh.points, mesh.triangles))
     except ValueError as error:
         raise TransferError(f"the {which} mesh is not one: {error}") from error
 
 
 def check_mesh(mesh: Mesh, which: str) -> None:
-    """Refuse what is not a mesh, points that are not finite, and numbers of points there are not.
+    """Raise for what is not a mesh, points that are not finite, and numbers of missing points.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def check_outside(outside: float) -> None:
         raise TransferError(f"outside={outside!r}: expected a share of an edge, 0 or more")
 
 
-def check_triangles(numbers: Ints, ours: Located, theirs: Located, outside: float) -> None:
+def check_triangles(numbers: Ints, ours: MeshLocator, theirs: MeshLocator, outside: float) -> None:
     """Refuse triangles of our mesh whose centroids are far outside of the other mesh."""
     centroids = ours.mesh.points[ours.mesh.triangles[numbers]].mean(axis=1)
     nearest, _, distances = theirs.locator.locate(centroids)

@@ -109,7 +109,7 @@ def as_field(values: ArrayLike, mesh: Mesh, space: str | None, label: str) -> Fi
         For a wrong length, one that fits two spaces, or a value that is not a finite number.
     """
     if space is not None and space not in DEGREES:
-        raise TransferError(f"space={space!r} is none of {', '.join(map(repr, DEGREES))}")
+        raise TransferError(f"space={space!r}: expected one of {', '.join(map(repr, DEGREES))}")
     try:
         raw = np.asarray(values)
     except ValueError as error:
@@ -142,8 +142,8 @@ def _space_of(raw: NDArray[np.generic], mesh: Mesh, space: str | None, label: st
                 f"{label} has {len(raw)} values, which fits {names}: say space={fits[0]!r} or "
                 f"space={fits[1]!r}"
             )
-        wanted = ", ".join(f"{size} ({name})" for name, size in lengths.items())
-        raise TransferError(f"{label} has {len(raw)} values; the old mesh takes {wanted}")
+        expected = ", ".join(f"{size} ({name})" for name, size in lengths.items())
+        raise TransferError(f"{label} has {len(raw)} values: expected {expected} on the old mesh")
     if len(raw) != lengths[space]:
         raise TransferError(
             f"{label} has {len(raw)} values; {space} on the old mesh takes {lengths[space]}"

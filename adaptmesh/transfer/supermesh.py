@@ -18,15 +18,15 @@ from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.types import Array, Floats, Ints
 from adaptmesh.value import Value
 
-from .flux_limiter import bounds_on_triangles, limited
+from .flux_limiter import bounds_on_triangles, limit
 from .l2_projection import mass_matrix, solve_mass
 from .location import (
     OUTSIDE,
-    Located,
+    MeshLocator,
     check_no_loose_points,
     check_outside,
     check_triangles,
-    located,
+    make_locator,
 )
 from .spaces import Field, Space, as_field, as_fields
 
@@ -67,7 +67,7 @@ class Overlay(Value):
     def __init__(self, old_mesh: Mesh, new_mesh: Mesh, *, outside: float = OUTSIDE) -> None:
         check_outside(outside)
         self.old_mesh, self.new_mesh = old_mesh, new_mesh
-        old, new = self._located
+        old, new = self._locators
         check_no_loose_points(new_mesh, "new")
         first, olds, self.areas = self._supermesh.pairs()
         news = np.repeat(np.arange(len(new_mesh.triangles), dtype=np.int32), np.diff(first))
@@ -81,12 +81,12 @@ class Overlay(Value):
         _check_covered_once(self.lost, old, new)
 
     @cached_property
-    def _located(self) -> tuple[Located, Located]:
-        return located(self.old_mesh, "old"), located(self.new_mesh, "new")
+    def _locators(self) -> tuple[MeshLocator, MeshLocator]:
+        return make_locator(self.old_mesh, "old"), make_locator(self.new_mesh, "new")
 
     @cached_property
     def _supermesh(self) -> core_Overlay:
-        old, new = self._located
+        old, new = self._locators
         return core_Overlay(old.locator, old.mesh.areas, new.locator, new.mesh.areas)
 
     @property
@@ -128,10 +128,10 @@ class Overlay(Value):
         new: dict[str, Array] = {}
         for kind in dict.fromkeys(field.space.name for field in fields.values()):
             of_kind = {name: f for name, f in fields.items() if f.space.name == kind}
-            new.update(zip(of_kind, self._projected([*of_kind.values()], keep_bounds), strict=True))
+            new.update(zip(of_kind, self._project([*of_kind.values()], keep_bounds), strict=True))
         return {name: new[name] for name in fields} if isinstance(values, Mapping) else new[""]
 
-    def _projected(self, fields: Sequence[Field], keep_bounds: bool) -> list[Array]:
+    def _project(self, fields: Sequence[Field], keep_bounds: bool) -> list[Array]:
         """Fields of one space, all their columns at once."""
         old, new = fields[0].space, Space(self.new_mesh, fields[0].space.name)
         columns = np.concatenate([field.columns for field in fields], axis=1)
@@ -148,13 +148,13 @@ class Overlay(Value):
         projected = solve_mass(matrix, moments, new.degree)
         if bounds is not None:
             low, high = self._supermesh.ranges(*bounds, new.nodes_of_triangles, new.size)
-            projected = limited(new, matrix, moments, projected, low, high)
+            projected = limit(new, matrix, moments, projected, low, high)
         ends = np.cumsum([field.columns.shape[1] for field in fields])[:-1]
         parts = np.split(projected, ends, axis=1)
         return [field.like(part) for field, part in zip(fields, parts, strict=True)]
 
 
-def _check_covered_once(beyond: Floats, ours: Located, theirs: Located) -> None:
+def _check_covered_once(beyond: Floats, ours: MeshLocator, theirs: MeshLocator) -> None:
     """Refuse a mesh of which several triangles cover the same part of a triangle of ours."""
     twice = np.flatnonzero(beyond < -COVERED_TWICE * ours.mesh.areas)
     if len(twice):

@@ -14,12 +14,12 @@ from adaptmesh.types import Array, Floats, Ints
 
 from .location import (
     OUTSIDE,
-    Located,
+    MeshLocator,
     check_distances,
     check_mesh,
     check_outside,
-    located,
     longest_edges,
+    make_locator,
 )
 from .spaces import Field, Space, as_field, as_fields, basis
 from .supermesh import Overlay
@@ -59,7 +59,7 @@ def transfer(
     keep_bounds: bool = False,
     outside: float = OUTSIDE,
 ) -> Any:
-    """Carry fields from one mesh to another of the same domain.
+    """Transfer fields from one mesh to another of the same domain.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def transfer(
     True
     """
     if method not in METHODS:
-        raise TransferError(f"method={method!r} is none of {', '.join(map(repr, METHODS))}")
+        raise TransferError(f"method={method!r}: expected one of {', '.join(map(repr, METHODS))}")
     check_mesh(old_mesh, "old")
     check_mesh(new_mesh, "new")
     check_outside(outside)
@@ -128,18 +128,18 @@ def transfer(
         overlay = Overlay(old_mesh, new_mesh, outside=outside)
         return overlay.project(values, space=space, keep_bounds=keep_bounds)
     if isinstance(values, Mapping):
-        return interpolated(as_fields(values, old_mesh, space), old_mesh, new_mesh, outside)
+        return interpolate(as_fields(values, old_mesh, space), old_mesh, new_mesh, outside)
     field = as_field(values, old_mesh, space, "the field")
-    return interpolated({"": field}, old_mesh, new_mesh, outside)[""]
+    return interpolate({"": field}, old_mesh, new_mesh, outside)[""]
 
 
-def interpolated(
+def interpolate(
     fields: Mapping[str, Field], old: Mesh, new: Mesh, outside: float
 ) -> dict[str, Array]:
     """The old fields at the nodes of the new mesh."""
     if is_same_mesh(old, new):
         return {name: field.like(field.columns.copy()) for name, field in fields.items()}
-    where = located(old, "old")
+    where = make_locator(old, "old")
     places: dict[str, tuple[Ints, Floats]] = {}
     out = {}
     for name, field in fields.items():
@@ -158,7 +158,7 @@ def is_same_mesh(old: Mesh, new: Mesh) -> bool:
     return np.array_equal(old.points, new.points) and np.array_equal(old.triangles, new.triangles)
 
 
-def _places(old: Located, space: Space, outside: float) -> tuple[Ints, Floats]:
+def _places(old: MeshLocator, space: Space, outside: float) -> tuple[Ints, Floats]:
     """The old triangle of each new node, and its barycentric coordinates there."""
     triangles, weights, distances = old.locator.locate(space.nodes)
     off = np.flatnonzero(distances > 0)

@@ -19,7 +19,7 @@ from metrics.types import Bools, Floats, Ints
 
 from .limits import Limits
 from .normalise import count_goal, scaled_to
-from .p1_elements import LinearElements, checked_mesh, checked_values
+from .p1_elements import LinearElements, check_mesh, check_values
 from .recovery import gradients
 
 __all__ = [
@@ -69,7 +69,7 @@ def zz_indicators(
 
 
 def _zz_squares(points: ArrayLike, triangles: ArrayLike, values: ArrayLike, method: str) -> Floats:
-    p, t, u = checked_values(points, triangles, values)
+    p, t, u = check_values(points, triangles, values)
     elements = LinearElements(p, t)
     off = gradients(p, t, u, method)[t] - elements.gradients(u)[:, None, :]
     # Of a linear function with the values d_i at the corners:  A/12 ((sum d_i)^2 + sum d_i^2).
@@ -116,7 +116,7 @@ def residual_indicators(
     Press 2013, chapter 1. Bernardi, Verfürth: Adaptive finite element methods for elliptic
     equations with non-smooth coefficients. Numerische Mathematik 85 (2000), 579-608: the weights.
     """
-    p, t, u = checked_values(points, triangles, values)
+    p, t, u = check_values(points, triangles, values)
     elements = LinearElements(p, t)
     k = _on_triangles(diffusion, len(t), "the diffusion")
     if not (k > 0).all():
@@ -172,7 +172,7 @@ def _check_finite(values: Floats, what: str, item: str) -> None:
 
 
 def doerfler_marking(indicators: ArrayLike, fraction: float = 0.5) -> Bools:
-    """The fewest triangles that have this share of the squared error, as a mask (m,).
+    """The smallest set of triangles with this share of the squared error, as a mask (m,).
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def doerfler_marking(indicators: ArrayLike, fraction: float = 0.5) -> Bools:
     """
     if not 0 < fraction <= 1:
         raise MetricError(f"the fraction must be above 0 and at most 1, not {fraction!r}")
-    squares = _checked_indicators(indicators) ** 2
+    squares = _check_indicators(indicators) ** 2
     order = np.argsort(-squares, kind="stable")
     reached = np.cumsum(squares[order])
     count = int(np.searchsorted(reached, fraction * reached[-1] * (1 - 1e-12))) + 1
@@ -206,7 +206,7 @@ def metric_from_indicators(
     error: float | None = None,
     order: float = 1.0,
     fraction: float = 1.0,
-    most_change: float = 4.0,
+    max_change: float = 4.0,
     h_min: float = 0.0,
     h_max: float = np.inf,
     gradation: float | None = 1.5,
@@ -215,8 +215,8 @@ def metric_from_indicators(
     """Sizes that spread the error evenly over the triangles of the next mesh.
 
     Where x triangles take the place of one with the indicator eta, its squared error eta² becomes
-    eta² / x^order. Of all x with the same sum those in proportion to eta^(2 / (order + 1)) leave
-    the least error: then all new triangles have the same.
+    eta² / x^order. Of all x with the same sum those in proportion to eta^(2 / (order + 1)) minimise
+    the error: then all new triangles have the same.
 
     Parameters
     ----------
@@ -235,7 +235,7 @@ def metric_from_indicators(
     fraction : float, optional
         Below 1, with `error`: only the triangles that have this share of the squared error get new
         sizes (Dörfler's marking); the others keep theirs.
-    most_change : float, optional
+    max_change : float, optional
         By how much a size may become smaller or larger at once, apart from the one factor that
         meets `target_vertices`: where indicators are zero, sizes would be infinite.
     h_min, h_max, gradation, law : optional
@@ -252,8 +252,8 @@ def metric_from_indicators(
         If not exactly one target is given, for indicators that are negative, not finite, or all
         zero, and for arrays that do not fit.
     """
-    p, t = checked_mesh(points, triangles)
-    eta = _checked_indicators(indicators)
+    p, t = check_mesh(points, triangles)
+    eta = _check_indicators(indicators)
     if eta.shape != (len(t),):
         raise MetricError(f"indicators must have the shape ({len(t)},), not {eta.shape}")
     if (target_vertices is None) == (error is None):
@@ -263,17 +263,15 @@ def metric_from_indicators(
             "a fraction of the triangles cannot be given new sizes and a number of "
             "vertices be met: give `error`, or leave `fraction` out"
         )
-    if not (order > 0 and most_change > 1):
-        raise MetricError(
-            f"order={order!r} must be positive and most_change={most_change!r} above 1"
-        )
+    if not (order > 0 and max_change > 1):
+        raise MetricError(f"order={order!r} must be positive and max_change={max_change!r} above 1")
     shares = eta ** (2 / (order + 1))
     marked = doerfler_marking(eta, fraction) if fraction < 1 else np.ones(len(t), bool)
     if error is not None:
         factor = _factor_for(error, eta, shares, marked, order)
     elif target_vertices is not None:
         factor = target_vertices / len(p) * len(t) / shares.sum()
-    bounded = np.clip(factor * shares, most_change**-2.0, most_change**2.0)
+    bounded = np.clip(factor * shares, max_change**-2.0, max_change**2.0)
     metric = _metric_at_vertices(np.where(marked, bounded, 1.0), LinearElements(p, t))
     limits = Limits(h_min, h_max, gradation=gradation, law=law)
     if error is not None:
@@ -297,17 +295,17 @@ def _factor_for(error: float, eta: Floats, shares: Floats, marked: Bools, order:
 
 
 def _metric_at_vertices(children: Floats, elements: LinearElements) -> Floats:
-    """The isotropic metric (n, 3) in which each triangle is worth so many unit triangles.
+    """The isotropic metric (n, 3) in which each triangle is worth a number of unit triangles.
 
     Its density sqrt(det M) = 1/h² is averaged around each vertex, weighted by area, so that the
     complexity is that of all triangles.
     """
     worth = _UNIT_AREA / 3 * np.repeat(children[:, None], 3, axis=1)
-    density = elements.gathered(worth) / elements.mass
+    density = elements.gather(worth) / elements.mass
     return np.stack([density, np.zeros_like(density), density], axis=1)
 
 
-def _checked_indicators(indicators: ArrayLike) -> Floats:
+def _check_indicators(indicators: ArrayLike) -> Floats:
     eta = np.asarray(as_numbers(indicators, "indicators"), np.float64)
     if eta.ndim != 1 or len(eta) == 0:
         raise MetricError(f"indicators must have the shape (m,), one a triangle, not {eta.shape}")
@@ -316,5 +314,5 @@ def _checked_indicators(indicators: ArrayLike) -> Floats:
         i = int(bad.argmax())
         raise MetricError(f"the indicator of triangle {i} is {eta[i]}: none may be negative")
     if not eta.any():
-        raise MetricError("all indicators are zero: they do not ask for any size")
+        raise MetricError("all indicators are zero: they say nothing about sizes")
     return eta

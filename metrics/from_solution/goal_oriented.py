@@ -1,4 +1,4 @@
-"""The metric for one number that is wanted of a solution, weighted by an adjoint."""
+"""The metric for a goal, one number of a solution, weighted by an adjoint."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from metrics.types import Floats
 
 from .limits import Limits
 from .optimal_metric import metric_from_hessians
-from .p1_elements import checked_mesh, place_of
+from .p1_elements import check_mesh, place_of
 from .recovery import absolute, gradients, hessians, largest_magnitude
 
 __all__ = ["metric_from_adjoint"]
@@ -35,7 +35,7 @@ def metric_from_adjoint(
     law: str = "mixed",
     recovery: str = "least squares",
 ) -> Background:
-    """The metric of least error in a goal J(u), for what there is to spend.
+    """The metric that minimises the error in a goal J(u), for a number of vertices or a complexity.
 
     For a conservation law div F(u) = f and the adjoint z of the goal, the error of J comes from the
     interpolation error of the fluxes, along the gradient of the adjoint: it is bounded by the
@@ -86,7 +86,7 @@ def metric_from_adjoint(
     Loseille, Dervieux, Alauzet: Fully anisotropic goal-oriented mesh adaptation for 3D steady Euler
     equations. Journal of Computational Physics 229 (2010), 2866-2897.
     """
-    p, t = checked_mesh(points, triangles)
+    p, t = check_mesh(points, triangles)
     f, z = _checked_pair(p, fluxes, adjoint)
     weighted = np.zeros((len(p), 3))
     for k in range(z.shape[1]):

@@ -15,7 +15,7 @@ __all__ = ["Limits"]
 
 @dataclass(frozen=True)
 class Limits:
-    """What a metric may be at all, and how fast it may change.
+    """Bounds on the sizes of a metric, their ratio, and how fast they may change.
 
     Attributes
     ----------

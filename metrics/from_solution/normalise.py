@@ -1,4 +1,4 @@
-"""The metric of least interpolation error, and the one factor that gives the vertices wanted."""
+"""The metric of minimal interpolation error, and the one factor with which it meets a target."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ __all__ = [
 
 _PRECISION = 5e-4  # of the logarithm of the amount
 _NARROW = 1e-9  # an interval for the logarithm of the factor in which there is no more to find
-_LEAST_SLOPE = 0.1  # of the excess over the logarithm, for a secant to be trusted
+_MIN_SLOPE = 0.1  # of the excess over the logarithm, for a secant to be trusted
 _FAR = 200.0  # logarithm of a factor beyond any use
 
 
 def lp_metric(absolute_hessians: ArrayLike, p: float = 2) -> Floats:
     """det(abs(H))^(-1 / (2 p + 2)) abs(H), packed (n, 3).
 
-    Of all metrics of the same complexity, that in proportion to this one has the least error in
+    Of all metrics of the same complexity, that in proportion to this one has the minimal error in
     the L^p norm when a function with the Hessian H is interpolated linearly, in two dimensions.
     For ``p=inf`` abs(H) itself; the smaller p, the more the fine features count.
 
@@ -119,7 +119,7 @@ def normalised(
     complexity: float | None = None,
     limits: Limits | None = None,
 ) -> Floats:
-    """The metric times the one factor with which it gives so many vertices, packed (n, 3).
+    """The metric times the one factor with which it meets a target, packed (n, 3).
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def normalised(
     complexity : float, optional
         The integral of sqrt(det M), instead.
     limits : Limits, optional
-        Applied after the factor; what is asked for is met after them, to 0.1 %.
+        Applied after scaling; the target is met including limits, to 0.1 %.
 
     Raises
     ------
@@ -149,28 +149,29 @@ def normalised(
 
 @dataclass(frozen=True)
 class Goal:
-    """What a metric shall have.
+    """A target for a metric.
 
     Attributes
     ----------
     amount : callable
-        Of a metric (n, 3), the quantity that is to be `wanted`.
-    wanted : float
+        Of a metric (n, 3), the quantity.
+    value : float
+        What it should be.
     name : str
         Of the quantity, for messages.
     grows : bool
-        Whether it grows as the metric gets finer. One that falls, an error, may also be less than
-        wanted, if even the coarsest metric allowed makes it so.
+        Whether it grows as the metric gets finer. One that falls, an error, may also be below
+        the value, if it is so even for the coarsest metric allowed.
     """
 
     amount: Callable[[Floats], float]
-    wanted: float
+    value: float
     name: str
     grows: bool = True
 
     def excess(self, metric: Floats) -> float:
         """How much finer the metric is than it has to be, as a logarithm."""
-        ratio = float(np.log(self.amount(metric) / self.wanted))
+        ratio = float(np.log(self.amount(metric) / self.value))
         return ratio if self.grows else -ratio
 
 
@@ -209,7 +210,7 @@ def scaled_to(
     x = float(np.clip(_unlimited_factor(goal, metric), coarsest, finest))
     ends: dict[bool, tuple[float, float]] = {}  # where it is too fine, and where too coarse
     last: bool | None = None
-    stretch = 1.0
+    scale = 1.0
     while True:
         met = limits.applied(np.exp(x) * metric, points, triangles)
         here = goal.excess(met)
@@ -229,13 +230,13 @@ def scaled_to(
             continue
         slope = 1.0
         if before is not None:
-            slope = float(np.clip((here - before[1]) / (x - before[0]), _LEAST_SLOPE, 1))
-        further = float(np.clip(x - stretch * here / slope, coarsest, finest))
+            slope = float(np.clip((here - before[1]) / (x - before[0]), _MIN_SLOPE, 1))
+        further = float(np.clip(x - scale * here / slope, coarsest, finest))
         if further == x:
             if side and not goal.grows:
                 return met
             raise MetricError(_impossible(goal, goal.amount(met), side, limits))
-        x, stretch = further, stretch if before is None else 2 * stretch
+        x, scale = further, scale if before is None else 2 * scale
 
 
 def _unlimited_factor(goal: Goal, metric: Floats) -> float:
@@ -257,7 +258,7 @@ def _useful_factors(metric: Floats, limits: Limits) -> tuple[float, float]:
 
 
 def _impossible(goal: Goal, amount: float, too_fine: bool, limits: Limits) -> str:
-    asked = f"{goal.wanted:.6g} {goal.name} cannot be had"
+    asked = f"{goal.value:.6g} {goal.name} cannot be reached"
     if too_fine:
         return (
             f"{asked}: the coarsest metric allowed, h_max = {limits.h_max:.6g} everywhere, has "
@@ -271,7 +272,7 @@ def _impossible(goal: Goal, amount: float, too_fine: bool, limits: Limits) -> st
 
 
 def check_combination(how: str) -> None:
-    """Refuse a way to combine metrics that there is not."""
+    """Raise for an unknown way to combine metrics."""
     if how not in ("intersection", "average"):
         raise MetricError(f'metrics are combined by "intersection" or "average", not {how!r}')
 

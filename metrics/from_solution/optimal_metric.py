@@ -46,7 +46,7 @@ def metric_from_solution(
     recovery: str = "least squares",
     combine: str = "intersection",
 ) -> Background:
-    """The metric of least error of linear interpolation, for what there is to spend.
+    """The metric that minimises the error of linear interpolation, for a given target.
 
     The absolute Hessian of each field at the vertices, by `metrics.Curvature`, and then
     `metrics.metric_from_hessians`.
@@ -62,8 +62,8 @@ def metric_from_solution(
     complexity : float, optional
         Instead: the integral of sqrt(det M).
     error : float or (k,) array_like, optional
-        Instead: the L^p norm of the interpolation error, by `metrics.interpolation_error`, that no
-        field shall exceed.
+        Instead: the bound for each field on the L^p norm of its interpolation error, by
+        `metrics.interpolation_error`.
     p : float, optional
         Of the norm, from 1 to inf. The smaller, the more small and weak features count.
     h_min, h_max, max_anisotropy : float, optional
@@ -122,7 +122,7 @@ def metric_from_hessians(
     limits: Limits | None = None,
     combine: str = "intersection",
 ) -> Background:
-    """The metric of least error of linear interpolation, from absolute Hessians at the vertices.
+    """The metric that minimises the error of linear interpolation, from absolute Hessians.
 
     In this order, always: the ratio of the sizes of each is bounded by `Limits.max_anisotropy`; its
     L^p metric (`metrics.lp_metric`); fields combined in the order given, after each is scaled to
@@ -184,7 +184,7 @@ def optimal_tensors(
     check_norm(p)
     limits = limits or Limits()
     if not len(hessians):
-        raise MetricError("no Hessians: at least one field must ask for sizes")
+        raise MetricError("no Hessians: expected those of at least one field")
     curvatures = [
         tensor.limit(
             tensor.pack(h, points=points, what="the absolute Hessian"),
@@ -197,10 +197,10 @@ def optimal_tensors(
         goal = count_goal(points, triangles, target_vertices, complexity)
         amounts = [1 / nodal_complexity(points, triangles, m) for m in shapes]
     else:
-        wanted = _as_errors(error, len(curvatures))
+        errors = _as_errors(error, len(curvatures))
 
         def shares(metrics: list[Floats]) -> list[float]:
-            pairs = zip(metrics, curvatures, wanted, strict=True)
+            pairs = zip(metrics, curvatures, errors, strict=True)
             return [interpolation_error(points, triangles, m, h, p) / e for m, h, e in pairs]
 
         amounts = shares(shapes)
@@ -224,12 +224,12 @@ def _as_fields(values: ArrayLike, count: int) -> list[Floats]:
     fields = list(np.atleast_2d(array.T))
     for k, u in enumerate(fields):
         if np.ptp(u) == 0:
-            raise MetricError(f"field {k} is {u[0]:.6g} everywhere: it does not ask for any size")
+            raise MetricError(f"field {k} is {u[0]:.6g} everywhere: it says nothing about sizes")
     return fields
 
 
 def _as_errors(error: ArrayLike, count: int) -> Floats:
-    wanted = np.asarray(as_numbers(error, "error"), np.float64)
-    if wanted.shape not in ((), (count,)) or not (wanted > 0).all():
+    out = np.asarray(as_numbers(error, "error"), np.float64)
+    if out.shape not in ((), (count,)) or not (out > 0).all():
         raise MetricError(f"error must be positive, one number or {count}, not {error!r}")
-    return np.broadcast_to(wanted, count)
+    return np.broadcast_to(out, count)

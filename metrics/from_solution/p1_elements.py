@@ -11,11 +11,11 @@ from metrics.errors import MetricError
 from metrics.types import Floats, Ints
 
 
-def checked_values(
+def check_values(
     points: ArrayLike, triangles: ArrayLike, values: ArrayLike
 ) -> tuple[Floats, Ints, Floats]:
     """The arrays of a mesh and of values (n,) at its vertices, fit to be differentiated."""
-    p, t = checked_mesh(points, triangles)
+    p, t = check_mesh(points, triangles)
     u = np.ascontiguousarray(as_numbers(values, "values"), np.float64)
     if u.shape != (len(p),):
         raise MetricError(f"values must have the shape ({len(p)},), one a point, not {u.shape}")
@@ -25,7 +25,7 @@ def checked_values(
     return p, t, u
 
 
-def checked_mesh(points: ArrayLike, triangles: ArrayLike) -> tuple[Floats, Ints]:
+def check_mesh(points: ArrayLike, triangles: ArrayLike) -> tuple[Floats, Ints]:
     """Points and counter-clockwise triangles; every point is in one."""
     p = as_points(points)
     t = as_triangles(triangles, len(p))
@@ -67,12 +67,12 @@ class LinearElements:
         doubled = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
         self.areas = doubled / 2
         self.slopes = np.stack([-opposite[..., 1], opposite[..., 0]], 2) / doubled[:, None, None]
-        self.mass = self.gathered(np.repeat(self.areas[:, None] / 3, 3, axis=1))
+        self.mass = self.gather(np.repeat(self.areas[:, None] / 3, 3, axis=1))
 
     def gradients(self, u: Floats) -> Floats:
         """Gradients on triangles, (m, 2), of the function with the values u (n,)."""
         return np.einsum("ti,tik->tk", u[self.triangles], self.slopes)
 
-    def gathered(self, parts: Floats) -> Floats:
+    def gather(self, parts: Floats) -> Floats:
         """Sums at vertices (n,) of parts at the corners of triangles (m, 3)."""
         return np.bincount(self.triangles.ravel(), parts.ravel()).astype(np.float64)

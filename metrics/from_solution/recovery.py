@@ -10,7 +10,7 @@ from metrics.checks import as_numbers
 from metrics.errors import MetricError
 from metrics.types import Floats, Ints
 
-from .p1_elements import checked_values, place_of
+from .p1_elements import check_values, place_of
 
 __all__ = ["METHODS", "absolute", "gradients", "hessians"]
 
@@ -40,12 +40,12 @@ def gradients(
         As for `hessians`.
     """
     check_method(method)
-    p, t, u = checked_values(points, triangles, values)
+    p, t, u = check_values(points, triangles, values)
     if method == "least squares":
         return _fit(p, t, u)[0]
     if method == "green":
         raise MetricError("Green's formula gives Hessians; for gradients use the projection")
-    return _projected(p, t, u)
+    return _project(p, t, u)
 
 
 def hessians(
@@ -63,7 +63,7 @@ def hessians(
         ``"least squares"``: of the quadratic that fits best, with equal weights, the values at
         the vertex and at two rings of neighbours; more rings where these do not determine it well,
         as at corners. Where 60 neighbours do not, as the mesh is one triangle thick there, the
-        least curved of those that fit best to two rings. Exact for quadratics. Of first order on
+        flattest of those that fit best to two rings. Exact for quadratics. Of first order on
         any mesh, of second where the neighbours lie symmetrically.
         ``"projection"``: the gradients by the lumped L2 projection, projected again, and made
         symmetric. ``"green"``: tested with the hat function of the vertex,
@@ -104,10 +104,10 @@ def derivatives(
     With Green's formula the first are by the projection.
     """
     check_method(method)
-    p, t, u = checked_values(points, triangles, values)
+    p, t, u = check_values(points, triangles, values)
     if method == "least squares":
         return _fit(p, t, u)
-    first = _projected(p, t, u)
+    first = _project(p, t, u)
     return first, _green(p, t, u) if method == "green" else _projected_twice(p, t, first)
 
 
@@ -151,11 +151,11 @@ def check_method(method: str) -> None:
 
 def _fit(p: Floats, t: Ints, u: Floats) -> tuple[Floats, Floats]:
     first, second, undetermined = _core.quadratic_fit(p, t, u)
-    _refuse_undetermined(p, undetermined)
+    _raise_undetermined(p, undetermined)
     return first, second
 
 
-def _refuse_undetermined(p: Floats, i: int) -> None:
+def _raise_undetermined(p: Floats, i: int) -> None:
     if i >= 0:
         raise MetricError(
             f"the values around {place_of(p, i)} do not determine a quadratic: the "
@@ -164,17 +164,17 @@ def _refuse_undetermined(p: Floats, i: int) -> None:
         )
 
 
-def _projected(p: Floats, t: Ints, u: Floats) -> Floats:
+def _project(p: Floats, t: Ints, u: Floats) -> Floats:
     return _core.projected_gradients(p, t, np.ascontiguousarray(u))
 
 
 def _projected_twice(p: Floats, t: Ints, first: Floats) -> Floats:
     """The projection of the derivatives of a gradient (n, 2), made symmetric."""
-    of_x, of_y = (_projected(p, t, component) for component in first.T)
+    of_x, of_y = (_project(p, t, component) for component in first.T)
     return np.stack([of_x[:, 0], 0.5 * (of_x[:, 1] + of_y[:, 0]), of_y[:, 1]], axis=1)
 
 
 def _green(p: Floats, t: Ints, u: Floats) -> Floats:
     second, undetermined = _core.green_hessians(p, t, u)
-    _refuse_undetermined(p, undetermined)
+    _raise_undetermined(p, undetermined)
     return second

@@ -76,10 +76,10 @@ def complexity(
         blocks = (corners[k : k + BLOCK] for k in range(0, len(corners), BLOCK))
         value, error = np.sum([_Leaves.of(space, block).totals() for block in blocks], axis=0)
         return Complexity(float(value), float(error), once)
-    return _adapted(space, _at_least(corners, 256), rtol, max_evaluations)
+    return _integrate(space, _cut_to_count(corners, 256), rtol, max_evaluations)
 
 
-def _adapted(
+def _integrate(
     field: ControlSpace, triangles: Floats, rtol: float, max_evaluations: int
 ) -> Complexity:
     """The adaptive quadrature: the leaves whose errors do not fit the tolerance are cut, again."""
@@ -122,7 +122,7 @@ class _Leaves(NamedTuple):
         if samples is None:
             samples = root_dets(field, triangles)
         whole = doubled_areas(triangles) * (samples @ RADON_W) / 2
-        parts = _bisected(triangles, _edge_to_cut(samples))
+        parts = _bisect(triangles, _edge_to_cut(samples))
         flat = parts.reshape(-1, 3, 2)
         inner = root_dets(field, flat)
         halves = (doubled_areas(flat) * (inner @ RADON_W) / 2).reshape(2, -1)
@@ -198,7 +198,7 @@ def _edge_to_cut(samples: Floats) -> Index:
     return np.asarray(variation.argmax(axis=1))
 
 
-def _bisected(triangles: Floats, edge: Index) -> Floats:
+def _bisect(triangles: Floats, edge: Index) -> Floats:
     """Triangles (k, 3, 2) cut from the middle of an edge to the vertex opposite: (2, k, 3, 2)."""
     k = np.arange(len(triangles))
     apex, start, end = (triangles[k, (edge + i) % 3] for i in range(3))
@@ -206,13 +206,13 @@ def _bisected(triangles: Floats, edge: Index) -> Floats:
     return np.stack([np.stack([apex, start, middle], 1), np.stack([apex, middle, end], 1)])
 
 
-def _at_least(triangles: Floats, count: int) -> Floats:
+def _cut_to_count(triangles: Floats, count: int) -> Floats:
     """Triangles cut across their longest edges until there are `count`, the longest ones first."""
     while 0 < len(triangles) < count:
         edges = triangles[:, [2, 0, 1]] - triangles[:, [1, 2, 0]]
         lengths = np.hypot(edges[..., 0], edges[..., 1])
         longest = lengths.max(axis=1)
         cut = longest >= 0.7 * longest.max()
-        parts = _bisected(triangles[cut], np.asarray(lengths[cut].argmax(axis=1)))
+        parts = _bisect(triangles[cut], np.asarray(lengths[cut].argmax(axis=1)))
         triangles = np.concatenate([triangles[~cut], parts.reshape(-1, 3, 2)])
     return triangles

@@ -39,7 +39,7 @@ def edge_lengths(
         Vertex numbers of the ends.
     field : number, callable or ControlSpace
     rtol : float, optional
-        The largest change by one more halving that is let be, relative to the edge. Where the
+        The largest change by one more halving that is accepted, relative to the edge. Where the
         metric has kinks, the error left may be a few times that.
     max_depth : int, optional
         How often an edge is halved at most.
@@ -55,7 +55,7 @@ def edge_lengths(
     """
     p = as_points(points)
     ends = p[as_indices(edges, 2, len(p), "edge")]
-    return _integrals(_lengths, _halved, as_control_space(field), ends, rtol, max_depth)
+    return _integrals(_lengths, _halve, as_control_space(field), ends, rtol, max_depth)
 
 
 def metric_areas(
@@ -75,7 +75,7 @@ def metric_areas(
     """
     p = as_points(points)
     corners = p[as_triangles(triangles, len(p))]
-    return _integrals(_areas, _quartered, as_control_space(field), corners, rtol, max_depth)
+    return _integrals(_areas, _quarter, as_control_space(field), corners, rtol, max_depth)
 
 
 def qualities(
@@ -116,11 +116,11 @@ def _integrals(
     out = np.empty(len(simplices))
     for start in range(0, len(simplices), BLOCK):
         block = slice(start, start + BLOCK)
-        out[block] = _refined(rule, split, field, simplices[block], rtol, max_depth)
+        out[block] = _refine(rule, split, field, simplices[block], rtol, max_depth)
     return out
 
 
-def _refined(
+def _refine(
     rule: Callable[[ControlSpace, Floats], Floats],
     split: Callable[[Floats], Floats],
     field: ControlSpace,
@@ -159,7 +159,7 @@ def _lengths(field: ControlSpace, segments: Floats) -> Floats:
     return speeds.reshape(-1, len(GAUSS_X)) @ GAUSS_W
 
 
-def _halved(segments: Floats) -> Floats:
+def _halve(segments: Floats) -> Floats:
     start, end = segments[:, 0], segments[:, 1]
     middle = 0.5 * (start + end)
     return np.concatenate([np.stack([start, middle], 1), np.stack([middle, end], 1)])
@@ -169,7 +169,7 @@ def _areas(field: ControlSpace, triangles: Floats) -> Floats:
     return 0.5 * doubled_areas(triangles) * (root_dets(field, triangles) @ RADON_W)
 
 
-def _quartered(triangles: Floats) -> Floats:
+def _quarter(triangles: Floats) -> Floats:
     a, b, c = (triangles[:, i] for i in range(3))
     ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
     return np.concatenate(

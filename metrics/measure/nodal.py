@@ -64,7 +64,7 @@ def h_shocks(points: ArrayLike, edges: ArrayLike, metric: Any) -> Floats:
     """How fast sizes change along edges, (k,): max(h_q / h_p, h_p / h_q)^(1 / l), at least 1.
 
     h is the size along the edge at either end, and l its length by the rule ``"logarithmic"`` of
-    `nodal_lengths`. A chain of unit edges with the H-shock 1.2 grows by 20 % from one to the next.
+    `nodal_lengths`. From one unit edge to the next, the H-shock 1.2 is a growth by 20 %.
     Parameters are as for `nodal_lengths`.
 
     References

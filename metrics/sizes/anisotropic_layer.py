@@ -19,10 +19,10 @@ from metrics.types import Floats
 
 from .growth import grown
 
-__all__ = ["layered", "size_along"]
+__all__ = ["layer_metric", "size_along"]
 
 
-def layered(
+def layer_metric(
     distances: Floats,
     normals: Floats,
     across: float,

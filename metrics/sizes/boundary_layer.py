@@ -7,12 +7,12 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from metrics.checks import chosen, h_limit, positive
+from metrics.checks import h_limit, one_of, positive
 from metrics.control import ControlSpace, Metric, as_control_space
 from metrics.errors import MetricError
 from metrics.types import Floats
 
-from .anisotropic_layer import layered, size_along
+from .anisotropic_layer import layer_metric, size_along
 from .geometry import as_curves
 from .growth import slope_of
 
@@ -73,7 +73,7 @@ class BoundaryLayer(ControlSpace):
     def values(self, points: Floats) -> ArrayLike:
         near = self.wall.nearest(points)
         along = size_along(self.tangential, near.points, near.directions)
-        return layered(
+        return layer_metric(
             near.distances, near.directions, self.first_height, along, self.slope, self.h_max
         )
 
@@ -99,7 +99,7 @@ def first_height(
     Parameters
     ----------
     y_plus : float
-        The wall distance wanted, in viscous lengths; 1 to resolve the viscous sublayer, 30 to 100
+        The wall distance, in viscous lengths; 1 to resolve the viscous sublayer, 30 to 100
         for wall functions.
     reynolds : float
         ``U length / nu``, dimensionless.
@@ -143,7 +143,7 @@ def first_height(
             f"the Reynolds number {reynolds!r} is not within 1e4 ... 1e10, where turbulent skin "
             "friction is known; it is velocity * length / kinematic viscosity"
         )
-    if chosen("correlation", correlation, ("schlichting", "white")) == "schlichting":
+    if one_of("correlation", correlation, ("schlichting", "white")) == "schlichting":
         friction = (2 * np.log10(reynolds) - 0.65) ** -2.3
     else:
         friction = 0.455 / np.log(0.06 * reynolds) ** 2

@@ -17,7 +17,7 @@ from metrics.types import Floats, Ints
 from .geometry import Geometry, as_curves
 from .growth import slope_of
 
-__all__ = ["BoundaryCurvature", "sampled"]
+__all__ = ["BoundaryCurvature", "sample"]
 
 
 class BoundaryCurvature(ControlSpace):
@@ -25,9 +25,9 @@ class BoundaryCurvature(ControlSpace):
 
     With the curvature k at a vertex of the curve, the size there is ``sqrt(8 chord_error / k)``,
     the chord that is that far from its arc in the middle, or ``2 pi / (elements_per_circle k)``,
-    or the smaller one; within [h_min, h_max], and linear between vertices. Anywhere it is the least
-    of ``h(p) + growth |x - p|`` over all points p of the curve: continuous, and nowhere steeper
-    than growth.
+    or the smaller one; within [h_min, h_max], and linear between vertices. Anywhere it is the
+    minimum of ``h(p) + growth |x - p|`` over all points p of the curve: continuous, and nowhere
+    steeper than growth.
 
     Parameters
     ----------
@@ -93,13 +93,13 @@ class BoundaryCurvature(ControlSpace):
         self.elements_per_circle = (
             None
             if elements_per_circle is None
-            else number("elements_per_circle", elements_per_circle, least=3)
+            else number("elements_per_circle", elements_per_circle, minimum=3)
         )
-        self.h_min = number("h_min", h_min, least=0)
+        self.h_min = number("h_min", h_min, minimum=0)
         self.h_max = h_limit(h_max, "h_min", self.h_min)
         self.growth = positive("growth", slope_of(growth, "linear"))
-        self.corner_angle = number("corner_angle", corner_angle, least=0)
-        given = sampled(curve, interval, samples) if callable(curve) else curve
+        self.corner_angle = number("corner_angle", corner_angle, minimum=0)
+        given = sample(curve, interval, samples) if callable(curve) else curve
         self.curve = as_curves(given, "a curve")
         self.sizes = self._sizes()
         self._build()
@@ -113,14 +113,14 @@ class BoundaryCurvature(ControlSpace):
         sizes = np.where(unknown & ~unknown[:, ::-1], sizes[:, ::-1], sizes)
         sizes[unknown.all(axis=1)] = np.inf
         sizes = np.clip(sizes, self.h_min, self.h_max)
-        least = sizes.min()
-        if least == np.inf:
+        smallest = sizes.min()
+        if smallest == np.inf:
             raise MetricError("the curve is straight, its curvature asks for no size: give h_max")
-        if least == 0:
+        if smallest == 0:
             raise MetricError("the curve is bent infinitely sharply: give h_min")
         # What the smallest size allows at the other end of the curve; no size above it matters.
-        span = np.ptp(self.curve.segments.reshape(-1, 2), axis=0)
-        capped: Floats = np.minimum(sizes, least + self.growth * np.hypot(*span))
+        extent = np.ptp(self.curve.segments.reshape(-1, 2), axis=0)
+        capped: Floats = np.minimum(sizes, smallest + self.growth * np.hypot(*extent))
         return np.ascontiguousarray(capped)
 
     def _size_of(self, curvatures: Floats) -> Floats:
@@ -154,11 +154,11 @@ class BoundaryCurvature(ControlSpace):
         )
 
 
-def sampled(
+def sample(
     curve: Callable[[Floats], ArrayLike], interval: tuple[float, float], samples: int
 ) -> Floats:
     """Points (samples, 2) of a parametric curve, evenly spaced in the parameter."""
-    count = int(number("samples", samples, least=3))
+    count = int(number("samples", samples, minimum=3))
     first, last = (number("interval", end) for end in interval)
     points = as_points(curve(np.linspace(first, last, count)))
     if len(points) != count:

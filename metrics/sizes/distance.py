@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from metrics.checks import chosen, h_limit, positive
+from metrics.checks import h_limit, one_of, positive
 from metrics.control import ControlSpace
 from metrics.types import Floats
 
@@ -69,7 +69,7 @@ class Distance(ControlSpace):
         self.h_min = positive("h_min", h_min)
         self.slope = slope_of(growth, law)
         self.h_max = h_limit(h_max, "h_min", self.h_min)
-        self.inside = chosen("inside", inside, ("zero", "boundary"))
+        self.inside = one_of("inside", inside, ("zero", "boundary"))
 
     def values(self, points: Floats) -> ArrayLike:
         distances = self.geometry.distances(points)

@@ -18,7 +18,7 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from metrics.checks import chosen, number
+from metrics.checks import number, one_of
 from metrics.errors import MetricError
 from metrics.types import Floats
 
@@ -29,8 +29,8 @@ Law: TypeAlias = Literal["linear", "geometric"]
 
 def slope_of(growth: Any, law: Law, name: str = "growth") -> float:
     """The slope dh/dd of a law."""
-    if chosen("law", law, ("linear", "geometric")) == "linear":
-        return number(name, growth, least=0)
+    if one_of("law", law, ("linear", "geometric")) == "linear":
+        return number(name, growth, minimum=0)
     if number(name, growth) < 1:
         raise MetricError(
             f"{name} = {growth!r} is the ratio of one size to the one before: it must be at least "

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from metrics.checks import as_numbers, chosen, number, positive
+from metrics.checks import as_numbers, number, one_of, positive
 from metrics.control import ControlSpace
 from metrics.errors import MetricError
 from metrics.types import Floats
@@ -104,8 +104,8 @@ class Raster(ControlSpace):
         interpolation: Literal["linear", "nearest"] = "linear",
         outside: Literal["clamp", "error"] = "clamp",
     ) -> None:
-        self.interpolation = chosen("interpolation", interpolation, ("linear", "nearest"))
-        self.outside = chosen("outside", outside, ("clamp", "error"))
+        self.interpolation = one_of("interpolation", interpolation, ("linear", "nearest"))
+        self.outside = one_of("outside", outside, ("clamp", "error"))
         if hasattr(values, "dims") and hasattr(values, "coords"):
             if bounds is not None or x is not None or y is not None:
                 raise MetricError("a DataArray has coordinates: give neither bounds nor x and y")
@@ -122,7 +122,7 @@ class Raster(ControlSpace):
         self._x_edges = _edges(self.x, None if bounds is None else bounds[::2])
         self._y_edges = _edges(self.y, None if bounds is None else bounds[1::2])
         _refuse_fill_values(given, max(np.ptp(self._x_edges), np.ptp(self._y_edges)))
-        self.sizes = _filled(np.ascontiguousarray(sizes), self.x, self.y, fill)
+        self.sizes = _fill(np.ascontiguousarray(sizes), self.x, self.y, fill)
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], band: int = 1, **options: Any) -> Raster:
@@ -154,7 +154,9 @@ class Raster(ControlSpace):
         try:
             with rasterio.open(path) as file:
                 if file.driver not in _DRIVERS:
-                    raise MetricError(f"{path}: {file.driver} is none of {', '.join(_DRIVERS)}")
+                    raise MetricError(
+                        f"{path}: {file.driver}: expected one of {', '.join(_DRIVERS)}"
+                    )
                 _refuse_bomb(path, file.width * file.height * np.dtype(file.dtypes[0]).itemsize)
                 values, affine, marker = file.read(band, masked=True), file.transform, file.nodata
         except (rasterio.errors.RasterioError, IndexError) as error:
@@ -251,7 +253,7 @@ def _of_data_array(data: Any) -> tuple[Any, Any, Any, list[float]]:
     y_dims = [dim for dim in dims if dim.lower() in _Y_NAMES]
     if len(dims) != 2 or len(x_dims) != 1 or len(y_dims) != 1:
         raise MetricError(
-            f"the DataArray has the dimensions {tuple(dims)}: two are wanted, one of "
+            f"the DataArray has the dimensions {tuple(dims)}: expected two, one of "
             f"{', '.join(_X_NAMES)} and one of {', '.join(_Y_NAMES)}; select or rename them"
         )
     values = np.asarray(data.values)
@@ -327,7 +329,7 @@ def _centres(
                 'give origin="upper" if row 0 of the raster is at the top, as in images, or '
                 'origin="lower" if it is at the bottom'
             )
-        chosen("origin", origin, ("upper", "lower"))
+        one_of("origin", origin, ("upper", "lower"))
         if len(bounds) != 4:
             raise MetricError(f"bounds must be (x0, y0, x1, y1), not {bounds!r}")
         x0, y0, x1, y1 = (number("bounds", value) for value in bounds)
@@ -369,10 +371,10 @@ def _edges(centres: Floats, ends: Any) -> Floats:
     return np.concatenate([[float(ends[0])], middle, [float(ends[1])]])
 
 
-def _filled(sizes: Floats, x: Floats, y: Floats, fill: Any) -> Floats:
+def _fill(sizes: Floats, x: Floats, y: Floats, fill: Any) -> Floats:
     missing = np.isnan(sizes)
     if isinstance(fill, str):
-        chosen("fill", fill, ("error", "nearest"))
+        one_of("fill", fill, ("error", "nearest"))
         if fill == "error" or not missing.any():
             return sizes
         from scipy.spatial import cKDTree

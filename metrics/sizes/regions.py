@@ -160,9 +160,9 @@ class _Interfaces:
         beside = np.where(is_left, self.left[piece], self.right[piece])
         out = np.where(distances <= self.heights[piece], beside, found)
         smaller = self.smaller[piece]
-        span = np.diff(self.geometry.segments, axis=1)[piece, 0]
-        travelled = shares * np.hypot(*span.T)
-        for end, gap in enumerate((travelled, np.hypot(*span.T) - travelled)):
+        vectors = np.diff(self.geometry.segments, axis=1)[piece, 0]
+        travelled = shares * np.hypot(*vectors.T)
+        for end, gap in enumerate((travelled, np.hypot(*vectors.T) - travelled)):
             at_end = gap <= self.margin
             vertex = self.ends[piece[at_end], end]
             smaller[at_end] = np.minimum(smaller[at_end], self.at_vertices[vertex])
@@ -202,10 +202,10 @@ def _on_curves(domain: Any, points: Floats, edges: Ints) -> tuple[_Pieces, Ints]
     n = len(points)
     ends = np.asarray(domain.segments, np.int64)
     keys = np.minimum(*ends.T) * n + np.maximum(*ends.T)
-    wanted = edges[:, 0] * n + edges[:, 1]
-    order = np.argsort(wanted)
-    at = np.minimum(np.searchsorted(wanted, keys, sorter=order), len(wanted) - 1)
-    edge_of_segment = np.where(wanted[order[at]] == keys, order[at], -1)
+    edge_keys = edges[:, 0] * n + edges[:, 1]
+    order = np.argsort(edge_keys)
+    at = np.minimum(np.searchsorted(edge_keys, keys, sorter=order), len(edge_keys) - 1)
+    edge_of_segment = np.where(edge_keys[order[at]] == keys, order[at], -1)
     edge = edge_of_segment[all_pieces.segments]
     curved = np.flatnonzero((edge >= 0) & (all_pieces.heights > 0))
     is_chord = np.isin(np.arange(len(edges)), edge[curved])

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from metrics.checks import evaluated, h_limit, positive
+from metrics.checks import evaluate, h_limit, positive
 from metrics.control import ControlSpace, Metric, as_control_space
 from metrics.errors import MetricError
 from metrics.types import Floats
 
-from .anisotropic_layer import layered, size_along
+from .anisotropic_layer import layer_metric, size_along
 from .geometry import as_curves
 from .growth import slope_of
 
@@ -93,14 +93,16 @@ class Shock(ControlSpace):
         front.normals[flat] = (1, 0)
         along = size_along(self.along, front.places, front.normals)
         along[flat] = self.across  # no direction: both sizes are the smaller one
-        return layered(front.distances, front.normals, self.across, along, self.slope, self.h_max)
+        return layer_metric(
+            front.distances, front.normals, self.across, along, self.slope, self.h_max
+        )
 
     def _of_curves(self, points: Floats) -> _Front:
         near = self.front.nearest(points)
         return _Front(near.distances, near.directions, near.points)
 
     def _of_level_set(self, points: Floats) -> _Front:
-        phi = evaluated(self.front, points, (), "the level set")
+        phi = evaluate(self.front, points, (), "the level set")
         slopes = self._gradients(points)
         steepness = np.hypot(slopes[:, 0], slopes[:, 1])
         flat = steepness == 0
@@ -120,10 +122,10 @@ class Shock(ControlSpace):
 
     def _gradients(self, points: Floats) -> Floats:
         if self.gradient is not None:
-            return evaluated(self.gradient, points, (2,), "the gradient of the level set")
+            return evaluate(self.gradient, points, (2,), "the gradient of the level set")
         shifts = self.step * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
         around = (points + shifts[:, None]).reshape(-1, 2)
-        right, left, up, down = evaluated(self.front, around, (), "the level set").reshape(4, -1)
+        right, left, up, down = evaluate(self.front, around, (), "the level set").reshape(4, -1)
         return np.stack([right - left, up - down], axis=1) / (2 * self.step)
 
     def __repr__(self) -> str:

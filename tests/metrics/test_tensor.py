@@ -417,7 +417,7 @@ def test_length_of_a_geometric_size_is_nearly_the_logarithmic_one():
 
 def test_pairs_must_match():
     for function in (tensor.intersect, tensor.union, tensor.geometric_mean):
-        with pytest.raises(MetricError, match="both sides, not 1 and 2"):
+        with pytest.raises(MetricError, match="both sides, got 1 and 2"):
             function([0.1], [0.1, 0.2])
     with pytest.raises(MetricError, match=r"edges must have the shape \(1, 2\)"):
         tensor.lengths([0.1], [0.1], [1.0, 0.0])

@@ -81,13 +81,13 @@ def test_a_mesh_that_could_be_better():
 
 def test_only_the_worst_are_looked_into():
     mesh = am.generate(SQUARE, 0.1)
-    found = am.explain(mesh, 0.02, most=3)
+    found = am.explain(mesh, 0.02, max_items=3)
     assert len(found.edges) == 3
     assert found.n_edges > 100
     lengths = [e.length for e in found.edges]
     assert lengths == sorted(lengths, reverse=True)
-    with pytest.raises(ValueError, match="most=-1"):
-        am.explain(mesh, 0.1, most=-1)
+    with pytest.raises(ValueError, match="max_items=-1"):
+        am.explain(mesh, 0.1, max_items=-1)
     with pytest.raises(MetricError):
         am.explain(mesh, -1.0)
 

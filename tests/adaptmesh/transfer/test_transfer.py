@@ -143,7 +143,11 @@ def test_too_far_outside():
 
 
 BAD = {
-    "length": (lambda m: np.ones(len(m.points) + 1), {}, r"has \d+ values; the old mesh takes"),
+    "length": (
+        lambda m: np.ones(len(m.points) + 1),
+        {},
+        r"has \d+ values: expected .* on the old mesh",
+    ),
     "no length": (lambda m: 3.0, {}, "single number"),
     "nan": (
         lambda m: np.where(np.arange(len(m.points)) == 5, np.nan, 1.0),
@@ -157,9 +161,9 @@ BAD = {
     ),
     "text": (lambda m: ["a"] * len(m.points), {}, "array of numbers"),
     "ragged": (lambda m: [[1.0], [1.0, 2.0]], {}, "array of numbers"),
-    "space": (lambda m: np.ones(len(m.points)), {"space": "P3"}, "'P3' is none of"),
+    "space": (lambda m: np.ones(len(m.points)), {"space": "P3"}, "'P3': expected one of"),
     "wrong space": (lambda m: np.ones(len(m.points)), {"space": "P0"}, "P0 on the old mesh takes"),
-    "method": (lambda m: np.ones(len(m.points)), {"method": "magic"}, "'magic' is none of"),
+    "method": (lambda m: np.ones(len(m.points)), {"method": "magic"}, "'magic': expected one of"),
     "negative": (lambda m: np.ones(len(m.points)), {"outside": -1}, "outside=-1"),
     "not a number": (lambda m: np.ones(len(m.points)), {"outside": np.nan}, "outside=nan"),
     "no number": (lambda m: np.ones(len(m.points)), {"outside": None}, "outside=None"),

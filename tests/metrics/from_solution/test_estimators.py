@@ -151,7 +151,7 @@ def test_half_the_error_of_first_order_needs_four_times_the_triangles():
             POINTS,
             TRIANGLES,
             metric_from_indicators(
-                POINTS, TRIANGLES, eta, error=total / k, gradation=None, most_change=100
+                POINTS, TRIANGLES, eta, error=total / k, gradation=None, max_change=100
             ).tensors,
         )
         for k in (10, 20)

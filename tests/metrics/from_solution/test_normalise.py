@@ -158,13 +158,13 @@ def test_what_the_limits_do_not_allow_is_refused_with_what_they_do():
     coarsest = predicted_vertices(POINTS, TRIANGLES, np.full(len(POINTS), 0.02))
     with pytest.raises(
         MetricError,
-        match=f"50 vertices cannot be had.* h_max = 0.02 .* has {coarsest:.6g}; raise h_max",
+        match=f"50 vertices cannot be reached.* h_max = 0.02 .* has {coarsest:.6g}; raise h_max",
     ):
         normalised(FRONT, POINTS, TRIANGLES, target_vertices=50, limits=Limits(h_max=0.02))
     finest = nodal_complexity(POINTS, TRIANGLES, np.full(len(POINTS), 0.1))
     with pytest.raises(
         MetricError,
-        match=f"1000 complexity cannot be had.* h_min = 0.1 .* has {finest:.6g}; lower h_min",
+        match=f"1000 complexity cannot be reached.* h_min = 0.1 .* has {finest:.6g}; lower h_min",
     ):
         normalised(FRONT, POINTS, TRIANGLES, complexity=1000, limits=Limits(h_min=0.1))
 

@@ -71,7 +71,9 @@ def test_half_the_error_needs_twice_the_complexity():
 def test_an_error_that_the_coarsest_metric_does_not_reach_gives_the_coarsest():
     got = metric_from_solution(POINTS, TRIANGLES, FRONT, error=1e3, h_max=0.2)
     np.testing.assert_allclose(tensor.sizes(got.tensors), 0.2)
-    with pytest.raises(MetricError, match=r"cannot be had: the finest .* h_min = 0.1 .*allow more"):
+    with pytest.raises(
+        MetricError, match=r"cannot be reached: the finest .* h_min = 0.1 .*allow more"
+    ):
         metric_from_solution(POINTS, TRIANGLES, FRONT, error=1e-9, h_min=0.1)
 
 

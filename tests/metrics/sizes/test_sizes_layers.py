@@ -257,11 +257,11 @@ def test_shock_refused(arguments, message):
 @pytest.mark.parametrize(
     ("phi", "gradient", "message"),
     [
-        (lambda x: x, None, r"the level set must return an array of shape \(2,\), not \(2, 2\)"),
+        (lambda x: x, None, r"the level set: expected an array of shape \(2,\), got \(2, 2\)"),
         (lambda x: x[:, 0] / 0, None, r"the level set at point 0 \(1.0, 2.0\) is not finite"),
         (lambda x: 1 / 0, None, "the level set raised ZeroDivisionError"),
         (lambda x: ["a", "b"], None, "must be real numbers"),
-        (circle, circle, r"the gradient of the level set must return .* \(2, 2\), not \(2,\)"),
+        (circle, circle, r"the gradient of the level set: expected .* \(2, 2\), got \(2,\)"),
     ],
 )
 def test_what_a_level_set_must_return(phi, gradient, message):
