@@ -45,7 +45,7 @@ from .repair.repair import Repair, Repairs, repair
 from .repair.simplify import Dropped, simplify
 from .transfer.supermesh import Overlay
 from .transfer.transfer import transfer
-from .view import plot
+from .view.plot import plot
 
 __version__ = "0.1.0"
 

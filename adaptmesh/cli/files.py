@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def check_outputs(mesh: Path | None = None, picture: Path | None = None) -> None:
     """Find out before the work, not after it, that the result cannot be put there."""
     from adaptmesh.io.formats import format_of
-    from adaptmesh.view.screen import check_path
+    from adaptmesh.view.plotter import check_path
 
     for path in (mesh, picture):
         if path is not None:

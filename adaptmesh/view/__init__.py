@@ -1,5 +1,1 @@
-"""Pictures of meshes and metrics, by pyvista (which is loaded when the first one is drawn)."""
-
-from .picture import plot
-
-__all__ = ["plot"]
+"""Pictures of meshes and metrics, drawn by pyvista (imported with the first picture)."""

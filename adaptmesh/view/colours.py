@@ -1,4 +1,4 @@
-"""Colours: numbers to RGB, names to RGB. Restrained, and told apart by the colour-blind."""
+"""Colours and colour scales, distinguishable for the colour-blind."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from adaptmesh.types import Floats
 Bytes = NDArray[np.uint8]
 
 INK = "#22303c"  # text, unnamed boundaries
-FADED = "#6b7885"  # lesser text
+FADED = "#6b7885"  # secondary text
 PAPER = "#ffffff"
-FACE = "#e9eef2"  # triangles without a meaning
-EDGE = "#4a5a68"  # edges without a meaning
+FACE = "#e9eef2"  # triangles that show no value
+EDGE = "#4a5a68"  # edges that show no value
 ELLIPSE = "#7a3b8f"
 
-# Unit edges recede, short ones are blue, long ones red; in between as far as the octave.
+# Edge lengths: short edges are blue, unit edges grey, long edges red.
 SHORT = ("#0b2a5b", "#1f5fae", "#6aa5dc")
 UNIT = ("#a9b8ae", "#94aa9b", "#a9b8ae")
 LONG = ("#f0995b", "#d1492e", "#7a1010")
 
-# The worse a triangle, the hotter; good ones recede.
+# Qualities from 0 (red) to 1 (grey blue).
 QUALITY = ("#6d0f1a", "#b5352f", "#e27d4e", "#f3c27f", "#e8e6c8", "#bcd5d3", "#86b3c4")
 SIZES = ("#123a5e", "#1f6b8a", "#4ba3a3", "#a5cfa4", "#eceac2")
 FIELD = "viridis"
-NO_VALUE = "#b3b3b3"  # NaN; on none of the scales
+NO_VALUE = "#b3b3b3"  # NaN; not on any scale
 
 REGIONS = (
     "#cfe0ee", "#f6dcc0", "#d4e8cf", "#e9d3e6", "#f5edbb", "#cfe8e6",
@@ -41,12 +41,12 @@ NAMES = (
 
 
 def rgb(colour: str) -> Bytes:
-    """The bytes of ``#rrggbb``."""
+    """Return the bytes of ``#rrggbb``."""
     return np.frombuffer(bytes.fromhex(colour[1:]), np.uint8)
 
 
-def ramp(colours: Sequence[str], steps: int = 256) -> Bytes:
-    """A table (steps, 3) that runs through colours at equal distances."""
+def make_ramp(colours: Sequence[str], steps: int = 256) -> Bytes:
+    """Interpolate between equally spaced colours: a table (steps, 3)."""
     anchors = np.array([rgb(colour) for colour in colours], float)
     at = np.linspace(0, len(anchors) - 1, steps)
     channels = [np.interp(at, np.arange(len(anchors)), anchors[:, k]) for k in range(3)]
@@ -55,20 +55,20 @@ def ramp(colours: Sequence[str], steps: int = 256) -> Bytes:
 
 @dataclass(frozen=True)
 class Scale:
-    """Numbers to colours; what is outside [low, high] takes the colour of the end.
+    """A map of numbers to colours; values outside [low, high] get the colours of the ends.
 
-    NaN has a colour of its own, `NO_VALUE`.
+    NaN gets the colour `NO_VALUE`.
 
     Attributes
     ----------
     label : str
-        What the numbers are.
+        Name of the quantity.
     table : (k, 3) array of uint8
     low, high : float
     logarithmic : bool
     ticks : tuple of float
-    band : (float, float), optional
-        A range to be marked beside the scale, and what to call it.
+    band : (float, float, str), optional
+        A range to be marked beside the scale, and its name.
     """
 
     label: str
@@ -80,7 +80,7 @@ class Scale:
     band: tuple[float, float, str] | None = None
 
     def share(self, values: NDArray[np.floating] | float) -> Floats:
-        """Where on the scale values are, from 0 to 1."""
+        """Return the positions of values on the scale, from 0 to 1."""
         v = np.asarray(values, float)
         low, high = self.low, self.high
         if self.logarithmic:
@@ -88,19 +88,19 @@ class Scale:
         return np.clip(np.nan_to_num((v - low) / (high - low)), 0, 1)
 
     def __call__(self, values: Floats) -> Bytes:
-        """The colours of values, (n, 3)."""
+        """Return the colours of values, (n, 3)."""
         steps = len(self.table)
         out: Bytes = self.table[np.minimum(self.share(values) * steps, steps - 1).astype(int)]
         out[np.isnan(values)] = rgb(NO_VALUE)
         return out
 
 
-def length_scale(cmap: str | None) -> Scale:
-    """Metric lengths, from a quarter to four; unit edges by themselves in the middle."""
-    table = np.concatenate([ramp(SHORT, 96), ramp(UNIT, 64), ramp(LONG, 96)])
+def make_length_scale(cmap: str | None) -> Scale:
+    """Make the logarithmic scale of metric lengths from 1/4 to 4, unit edges in the middle."""
+    table = np.concatenate([make_ramp(SHORT, 96), make_ramp(UNIT, 64), make_ramp(LONG, 96)])
     return Scale(
         "metric edge length",
-        table if cmap is None else named(cmap),
+        table if cmap is None else load_colour_map(cmap),
         0.25,
         4.0,
         logarithmic=True,
@@ -109,33 +109,33 @@ def length_scale(cmap: str | None) -> Scale:
     )
 
 
-def quality_scale(label: str, cmap: str | None) -> Scale:
-    """Qualities, from 0 to 1."""
-    table = ramp(QUALITY) if cmap is None else named(cmap)
+def make_quality_scale(label: str, cmap: str | None) -> Scale:
+    """Make the scale of qualities from 0 to 1."""
+    table = make_ramp(QUALITY) if cmap is None else load_colour_map(cmap)
     return Scale(label, table, 0.0, 1.0, ticks=(0, 0.2, 0.4, 0.6, 0.8, 1))
 
 
-def size_scale(sizes: Floats, cmap: str | None) -> Scale:
-    """Sizes from the least to the greatest, logarithmic."""
+def make_size_scale(sizes: Floats, cmap: str | None) -> Scale:
+    """Make a logarithmic scale from the smallest to the largest size."""
     low, high = float(sizes.min()), float(sizes.max())
-    table = ramp(SIZES) if cmap is None else named(cmap)
+    table = make_ramp(SIZES) if cmap is None else load_colour_map(cmap)
     if high < 1.05 * low:
         low, high = low / 1.05, high * 1.05
     return Scale("size", table, low, high, True, tuple(np.geomspace(low, high, 5).tolist()))
 
 
-def field_scale(values: Floats, cmap: str | None) -> Scale:
-    """Any numbers, from the least to the greatest."""
+def make_field_scale(values: Floats, cmap: str | None) -> Scale:
+    """Make a linear scale from the smallest to the largest value."""
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
     if not low < high:
         low, high = low - 0.5, high + 0.5
     ticks = tuple(np.linspace(low, high, 6).tolist())
-    return Scale("value", named(cmap or FIELD), low, high, ticks=ticks)
+    return Scale("value", load_colour_map(cmap or FIELD), low, high, ticks=ticks)
 
 
-def named(cmap: str) -> Bytes:
-    """The table of a colour map that pyvista knows."""
+def load_colour_map(cmap: str) -> Bytes:
+    """Return the table of a colour map of pyvista."""
     import pyvista as pv
 
     return np.asarray(pv.LookupTable(cmap, n_values=256).values)[:, :3]

@@ -13,10 +13,11 @@ import metrics
 from adaptmesh.domain.domain import Domain
 from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.view import colours, ellipses, plot
-from adaptmesh.view.frame import Frame, bounds_of
-from adaptmesh.view.key import as_written
-from adaptmesh.view.numbers import _apart, numbers_of
+from adaptmesh.view import colours, ellipses
+from adaptmesh.view.frame import Frame, bounding_box
+from adaptmesh.view.legend import escape
+from adaptmesh.view.number_labels import _select_disjoint, label_domain
+from adaptmesh.view.plot import plot
 
 SMALL = (420, 300)
 
@@ -96,7 +97,7 @@ def test_domain_fills_the_view(draw):
     inside = np.abs(image.astype(int) - colours.rgb(colours.FACE)).max(axis=2) <= 2
     rows, columns = (np.flatnonzero(inside.sum(axis=axis) > 40) for axis in (1, 0))
     assert abs(np.ptp(rows) - np.ptp(columns)) <= 2  # a square stays one
-    x0, y0, x1, _ = Frame.of(bounds_of(MESH.points), (300, 300), False, True).view
+    x0, y0, x1, _ = Frame.of(bounding_box(MESH.points), (300, 300), False, True).view
     assert np.ptp(columns) == pytest.approx(x1 - x0, abs=8)  # the lines are thick
     assert columns[0] == pytest.approx(x0, abs=4)
     assert rows[-1] == pytest.approx(300 - y0, abs=5)
@@ -112,7 +113,7 @@ def test_regions(draw):
 def test_quality(draw):
     flat = Mesh([[0, 0], [1, 0], [1, 0.02], [0, 1]], [[0, 1, 2], [0, 2, 3]])
     image = draw(flat, show="quality")
-    bad, good = colours.quality_scale("quality", None)(np.array([0.05, 0.85]))
+    bad, good = colours.make_quality_scale("quality", None)(np.array([0.05, 0.85]))
     assert has(image, "#" + bytes(bad).hex(), 25) > 20
     assert has(image, "#" + bytes(good).hex(), 40) > 1_000
 
@@ -141,7 +142,7 @@ def test_sizes_and_values(draw):
     assert min(has(image, small), has(image, large)) > 10
     for values in (MESH.points[:, 0], np.arange(len(MESH.triangles))):
         image = draw(MESH, show=values, edges=False)
-        table = colours.named(colours.FIELD)
+        table = colours.load_colour_map(colours.FIELD)
         assert has(image, "#" + bytes(table[3]).hex(), 20) > 100
         assert has(image, "#" + bytes(table[-3]).hex(), 20) > 100
 
@@ -158,13 +159,13 @@ def test_no_value_has_a_colour_of_its_own_and_changes_no_other(draw, hole, at):
     without, image = draw(MESH, show=x, edges=False), draw(MESH, show=values, edges=False)
     grey = colours.NO_VALUE
     assert has(without, grey, 3) == 0 and has(image, grey, 3) > 500
-    table = colours.named(colours.FIELD)
+    table = colours.load_colour_map(colours.FIELD)
     for end in ("#" + bytes(table[3]).hex(), "#" + bytes(table[-3]).hex()):
         assert has(image, end, 20) == pytest.approx(has(without, end, 20), rel=0.1)
 
 
 def test_infinite_values_have_the_colours_of_the_ends():
-    scale = colours.field_scale(np.array([0.0, 1.0]), None)
+    scale = colours.make_field_scale(np.array([0.0, 1.0]), None)
     ends = scale(np.array([-np.inf, np.inf, 0.0, 1.0, np.nan]))
     assert (ends[:2] == ends[2:4]).all() and (ends[4] == colours.rgb(colours.NO_VALUE)).all()
 
@@ -201,8 +202,8 @@ def test_picture_is_the_same_at_every_scale(draw, scale, offset):
 
 def test_elongated_domain_is_stretched_and_says_so(draw):
     frame = Frame.of((0, 0, 1, 1e-3), None, False, False)
-    assert frame.stretch[0] == 1
-    assert frame.stretch[1] > 50
+    assert frame.axis_scale[0] == 1
+    assert frame.axis_scale[1] > 50
     image = draw(Mesh(MESH.points * [1, 1e-3], MESH.triangles), edges=False)
     assert has(image, colours.FACE, 2) > 2_000
 
@@ -264,17 +265,17 @@ def test_other_formats(can_draw, tmp_path, suffix, magic):
 @pytest.mark.parametrize(
     ("request_", "words"),
     [
-        ({"show": "beauty"}, "none of"),
-        ({"show": "length"}, "which metric"),
-        ({"ellipses": True}, "which metric"),
+        ({"show": "beauty"}, "expected one of"),
+        ({"show": "length"}, "a metric"),
+        ({"ellipses": True}, "a metric"),
         ({"show": np.zeros(5)}, "shape"),
         ({"show": np.zeros(len(MESH.points), complex)}, "expected real numbers"),
         ({"show": ["a"] * len(MESH.points)}, "expected real numbers"),
-        ({"bounds": (5, 5, 6, 6)}, "in sight"),
+        ({"bounds": (5, 5, 6, 6)}, "no triangle in this box"),
         ({"bounds": (1, 1, 0, 0)}, "x0 < x1"),
         ({"bounds": (0, 0, 1, np.nan)}, "x0 < x1"),
         ({"window_size": (10, 10)}, "window_size"),
-        ({"metric": 1.0, "ellipses": -1}, "less than 0"),
+        ({"metric": 1.0, "ellipses": -1}, "at least 0"),
     ],
 )
 def test_request_refused(request_, words):
@@ -306,22 +307,22 @@ def test_words_are_drawn_as_written():
 
     renderer = vtkTextRenderer.GetInstance()
     for words in ("rock|sand", "$x$ and $y$", "5 $", "a^2_b", "|a", "a\\|b|$c$"):
-        assert renderer.DetectBackend(as_written(words)) != vtkTextRenderer.MathText
-    assert as_written("rock sand, 5 %") == "rock sand, 5 %"
+        assert renderer.DetectBackend(escape(words)) != vtkTextRenderer.MathText
+    assert escape("rock sand, 5 %") == "rock sand, 5 %"
 
 
 @pytest.mark.parametrize("transform", SIMILARITIES, ids=str)
 def test_numbers_of_points_stand_clear_of_their_lines(transform):
     star = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)]
     domain = Domain(transform(star), [(0, 1), (1, 2), (2, 3), (3, 0), (4, 2)])
-    points = [number for number in numbers_of(domain) if not number.is_side]
+    points = [number for number in label_domain(domain) if not number.is_side]
     assert [number.words for number in points] == ["0", "1", "2", "3", "4"]
     for number in points:
         for a, b in domain.segments:
             v = int(number.words)
             if v in (a, b):
                 along = domain.points[a + b - v] - domain.points[v]
-                cosine = along @ number.aside / np.hypot(*along)
+                cosine = along @ number.direction / np.hypot(*along)
                 assert cosine < np.cos(np.radians(100))
 
 
@@ -329,7 +330,7 @@ def test_numbers_do_not_overlap():
     rng = np.random.default_rng(5)
     low = rng.uniform(0, 300, (2000, 2))
     boxes = np.concatenate([low, low + rng.uniform(5, 40, low.shape)], axis=1)
-    chosen = _apart(boxes, np.arange(len(boxes)))
+    chosen = _select_disjoint(boxes, np.arange(len(boxes)))
 
     def overlap(a, b):
         return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
@@ -354,7 +355,7 @@ def test_path_refused(tmp_path):
 
 def test_nothing_heavy_is_loaded_with_the_package():
     script = (
-        "import adaptmesh.view.picture, adaptmesh.quality.report, adaptmesh.convert, sys;"
+        "import adaptmesh.view.plot, adaptmesh.quality.report, adaptmesh.convert, sys;"
         "print([m for m in ('pyvista', 'vtkmodules', 'matplotlib', 'shapely') if m in sys.modules])"
     )
     done = subprocess.run(
@@ -369,7 +370,7 @@ def test_nothing_heavy_is_loaded_with_the_package():
 def test_outlines_of_ellipses_are_at_distance_one():
     tensors = np.array([[4.0, 1.0, 2.0], [100.0, -9.9, 1.0]])
     shapes = ellipses.Ellipses(np.array([[1.0, 2.0], [3.0, 4.0]]), tensors, 2.0)
-    v = (shapes.outlines - shapes.centres[:, None]) / shapes.enlarged
+    v = (shapes.outlines - shapes.centres[:, None]) / shapes.enlargement
     m11, m12, m22 = tensors.T[:, :, None]
     squares = m11 * v[..., 0] ** 2 + 2 * m12 * v[..., 0] * v[..., 1] + m22 * v[..., 1] ** 2
     np.testing.assert_allclose(squares, 1, rtol=1e-9)
@@ -384,14 +385,14 @@ def test_chosen_ellipses_do_not_touch():
     c, s, a, b = np.cos(angle), np.sin(angle), long**-2, 0.02**-2
     tensors = np.stack([a * c * c + b * s * s, (a - b) * c * s, a * s * s + b * c * c], axis=1)
     frame = Frame.of((0, 0, 1, 1), (800, 800), False, False)
-    chosen = ellipses.choose(places, tensors, 100, frame)
+    chosen = ellipses.choose_ellipses(places, tensors, 100, frame)
     shapes = [Polygon(outline) for outline in chosen.outlines]
     assert len(shapes) > 20
     assert not any(p.intersects(q) for i, p in enumerate(shapes) for q in shapes[:i])
 
 
 def test_unit_lengths_stand_apart_on_the_scale():
-    scale = colours.length_scale(None)
+    scale = colours.make_length_scale(None)
     below, unit, above = scale(np.array([0.69, 1.0, 1.43])).astype(int)
     assert np.abs(below - unit).max() > 60
     assert np.abs(above - unit).max() > 60

@@ -1,4 +1,4 @@
-"""The picture of a domain: its points and sides with their numbers, and its names."""
+"""Numbers of the points and sides of a domain, for its picture."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from adaptmesh.types import Floats
 
 from .colours import FADED, PAPER, rgb
 from .frame import Frame
-from .key import Pen
+from .legend import Pen
 
 WIDTH, HEIGHT = 9.0, 16.0
-"""Pixels that a digit takes."""
+"""Size of a digit in pixels."""
 
-ASIDE = 13.0
-"""Pixels from a point to the middle of its number."""
+OFFSET = 13.0
+"""Pixels from a point to the centre of its number."""
 
 
-class Number(NamedTuple):
-    """A number, what it belongs to, and in which direction from there it stands."""
+class NumberLabel(NamedTuple):
+    """A number, the point (x, y) that it belongs to, and its direction from there."""
 
     words: str
     x: float
     y: float
-    aside: tuple[float, float]
+    direction: tuple[float, float]
     is_side: bool
 
 
-def mesh_of_domain(domain: Domain) -> Mesh:
-    """The triangles between the points of a domain, with its lines and names, to be drawn."""
+def make_domain_mesh(domain: Domain) -> Mesh:
+    """Make a mesh of the triangles, lines and names of a domain, for drawing."""
     return Mesh(
         domain.points,
         domain.triangles,
@@ -46,11 +46,11 @@ def mesh_of_domain(domain: Domain) -> Mesh:
     )
 
 
-def numbers_of(domain: Domain) -> list[Number]:
-    """The numbers of sides, at their middles, then those of points.
+def label_domain(domain: Domain) -> list[NumberLabel]:
+    """Label sides at their midpoints, then points.
 
-    Sides are the curves that the domain is made of, or its segments, as ``names`` count them.
-    Points that only hold chords of curves have none.
+    Sides are the curves of the domain or its segments, numbered as in ``names``. Points between
+    the chords of a curve get no number.
     """
     curves = domain.curved.curves
     middles = (
@@ -58,20 +58,22 @@ def numbers_of(domain: Domain) -> list[Number]:
         if curves
         else domain.points[domain.segments].mean(axis=1)
     )
-    sides = [Number(str(i), x, y, (0.0, 0.0), True) for i, (x, y) in enumerate(middles.tolist())]
+    sides = [
+        NumberLabel(str(i), x, y, (0.0, 0.0), True) for i, (x, y) in enumerate(middles.tolist())
+    ]
     vertices = np.flatnonzero(domain.curved.is_vertex).tolist()
     places = domain.points[vertices].tolist()
     points = [
-        Number(str(v), x, y, free, False)
+        NumberLabel(str(v), x, y, free, False)
         for v, (x, y), free in zip(
-            vertices, places, _free_directions(domain, vertices), strict=True
+            vertices, places, _find_free_directions(domain, vertices), strict=True
         )
     ]
     return sides + points
 
 
-def _free_directions(domain: Domain, vertices: Sequence[int]) -> list[tuple[float, float]]:
-    """For each vertex the middle of the widest angle between its lines."""
+def _find_free_directions(domain: Domain, vertices: Sequence[int]) -> list[tuple[float, float]]:
+    """Return for each vertex the bisector of the widest angle between its lines."""
     ends = np.concatenate([domain.pieces, domain.pieces[:, ::-1]])
     along = domain.points[ends[:, 1]] - domain.points[ends[:, 0]]
     angle = np.arctan2(along[:, 1], along[:, 0])
@@ -89,16 +91,16 @@ def _free_directions(domain: Domain, vertices: Sequence[int]) -> list[tuple[floa
     return out
 
 
-def draw_numbers(pen: Pen, numbers: Sequence[Number]) -> int:
-    """Write numbers, those of sides in bold, those of points pale beside them; returns how many."""
+def draw_numbers(pen: Pen, numbers: Sequence[NumberLabel]) -> int:
+    """Draw numbers where they do not overlap: sides bold, points pale; return how many."""
     x0, y0, x1, y1 = pen.frame.view
     unit = pen.frame.unit
-    places = _pixels(pen.frame, np.array([(n.x, n.y) for n in numbers]))
+    places = _to_pixels(pen.frame, np.array([(n.x, n.y) for n in numbers]))
     in_view = ((places >= (x0 - 1, y0 - 1)) & (places <= (x1 + 1, y1 + 1))).all(axis=1)
-    centres = places + ASIDE * unit * np.array([n.aside for n in numbers])
+    centres = places + OFFSET * unit * np.array([n.direction for n in numbers])
     half = np.array([(len(n.words) * WIDTH / 2 + 1, HEIGHT / 2) for n in numbers]) * unit
     boxes = np.concatenate([centres - half, centres + half], axis=1)
-    chosen = _apart(boxes, np.flatnonzero(in_view))
+    chosen = _select_disjoint(boxes, np.flatnonzero(in_view))
     sides = [i for i in chosen if numbers[i].is_side]
     if sides:
         pen.rectangles(boxes[sides].tolist(), np.tile(rgb(PAPER), (len(sides), 1)))
@@ -111,8 +113,8 @@ def draw_numbers(pen: Pen, numbers: Sequence[Number]) -> int:
     return len(chosen)
 
 
-def _apart(boxes: Floats, candidates: NDArray[np.intp]) -> list[int]:
-    """Which boxes (x0, y0, x1, y1) overlap none chosen before them."""
+def _select_disjoint(boxes: Floats, candidates: NDArray[np.intp]) -> list[int]:
+    """Select boxes (x0, y0, x1, y1) in order, without those that overlap a selected one."""
     chosen: list[int] = []
     taken = np.empty((len(candidates), 4))
     for i in candidates.tolist():
@@ -124,7 +126,7 @@ def _apart(boxes: Floats, candidates: NDArray[np.intp]) -> list[int]:
     return chosen
 
 
-def _pixels(frame: Frame, points: Floats) -> Floats:
-    """Points of the domain as pixels of the window, from its lower left corner."""
+def _to_pixels(frame: Frame, points: Floats) -> Floats:
+    """Map points to pixel coordinates from the lower left corner of the window."""
     placed = frame.place(points)[:, :2].astype(np.float64)
     return np.array(frame.window) / 2 + (placed - np.array(frame.centre)) * frame.pixel

@@ -1,4 +1,4 @@
-"""What stands beside the view: header, colour scale, legend. Flat shapes and text in pixels."""
+"""Header, colour scale and legend beside the view, drawn in pixels."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from .colours import FADED, INK, PAPER, Bytes, Scale, rgb
 from .frame import Frame
 
 TEXT = 17  # pixels
-MOST_ENTRIES = 14  # of a legend
+MAX_ENTRIES = 14  # per legend
 
 
-def as_written(words: str) -> str:
-    """What VTK draws as these words: a pair of $ would set a formula, and | columns of a table.
+def escape(words: str) -> str:
+    """Escape text for VTK, which takes a pair of $ for a formula and | for a column separator.
 
-    There is no way to write | but at the beginning; the broken bar comes nearest.
+    VTK cannot draw | inside a text; the broken bar is drawn instead.
     """
     return words.replace("$", r"\$").replace("|", "\N{BROKEN BAR}")
 
 
 class Pen:
-    """Draws text and rectangles at pixels of the window, from its lower left corner."""
+    """Draws text and rectangles at pixel coordinates from the lower left corner of the window."""
 
     def __init__(self, plotter: Any, frame: Frame) -> None:
         self.plotter = plotter
@@ -41,11 +41,11 @@ class Pen:
         bold: bool = False,
         right: bool = False,
     ) -> None:
-        """Write, vertically centred at y."""
+        """Draw text from x on, or up to x if `right`, vertically centred at y."""
         from vtkmodules.vtkRenderingCore import vtkTextActor
 
         actor = vtkTextActor()
-        actor.SetInput(as_written(words))
+        actor.SetInput(escape(words))
         style = actor.GetTextProperty()
         style.SetFontFamilyToArial()
         style.SetFontSize(max(round(size * self.frame.unit), 6))
@@ -60,7 +60,7 @@ class Pen:
         self.plotter.add_actor(actor, pickable=False)
 
     def rectangles(self, boxes: Sequence[Sequence[float]], colours: Bytes) -> None:
-        """Fill boxes (x0, y0, x1, y1), each in its colour."""
+        """Fill boxes (x0, y0, x1, y1), each with its colour."""
         import pyvista as pv
         from vtkmodules.vtkRenderingCore import vtkActor2D, vtkCoordinate, vtkPolyDataMapper2D
 
@@ -82,7 +82,7 @@ class Pen:
 
 
 def draw_header(pen: Pen, title: str | None, caption: str) -> None:
-    """The title, and under it in small what is drawn."""
+    """Draw the title, and under it the caption in smaller letters."""
     frame, u = pen.frame, pen.frame.unit
     top = frame.window[1] - frame.margin / 2
     if title:
@@ -93,7 +93,7 @@ def draw_header(pen: Pen, title: str | None, caption: str) -> None:
 
 
 def draw_surroundings(pen: Pen, outline: bool) -> None:
-    """Cover what reaches out of the view by more than half the margin, or draw a line around it."""
+    """Cover what is drawn beyond the overhang of the view; with an outline, beyond the view."""
     frame = pen.frame
     width, height = frame.window
     x0, y0, x1, y1 = frame.view
@@ -106,15 +106,16 @@ def draw_surroundings(pen: Pen, outline: bool) -> None:
         ]
         pen.rectangles(sides, np.tile(rgb(FADED), (4, 1)))
     else:
-        x0, y0, x1, y1 = x0 - frame.spill, y0 - frame.spill, x1 + frame.spill, y1 + frame.spill
+        beyond = frame.overhang
+        x0, y0, x1, y1 = x0 - beyond, y0 - beyond, x1 + beyond, y1 + beyond
     around = [(0, 0, width, y0), (0, y1, width, height), (0, y0, x0, y1), (x1, y0, width, y1)]
     pen.rectangles(around, np.tile(rgb(PAPER), (4, 1)))
 
 
 def draw_scale(pen: Pen, scale: Scale, top: float, length: float) -> float:
-    """A vertical colour scale with ticks; returns where it ends."""
+    """Draw a vertical colour scale with ticks; return the y coordinate of its lower end."""
     u = pen.frame.unit
-    x = pen.frame.window[0] - pen.frame.key
+    x = pen.frame.window[0] - pen.frame.legend
     pen.text(scale.label, x, top - 10 * u, bold=True, size=16)
     high, low = top - 34 * u, top - 34 * u - length
     steps = np.linspace(low, high, len(scale.table) + 1)
@@ -145,29 +146,29 @@ def draw_scale(pen: Pen, scale: Scale, top: float, length: float) -> float:
 def draw_legend(
     pen: Pen, heading: str, entries: Sequence[tuple[str, str]], top: float, height: float
 ) -> float:
-    """A heading and names under it, each beside a mark so high; returns where it ends."""
+    """Draw a heading and names with coloured marks of a height; return the lower end."""
     u = pen.frame.unit
-    x = pen.frame.window[0] - pen.frame.key
+    x = pen.frame.window[0] - pen.frame.legend
     pen.text(heading, x, top - 10 * u, bold=True, size=16)
     y = top - 36 * u
     boxes, colours = [], []
-    for name, colour in entries[:MOST_ENTRIES]:
+    for name, colour in entries[:MAX_ENTRIES]:
         boxes.append((x, y - height / 2 * u, x + 18 * u, y + height / 2 * u))
         colours.append(rgb(colour))
-        pen.text(_shortened(name), x + 28 * u, y, size=16)
+        pen.text(_shorten(name), x + 28 * u, y, size=16)
         y -= 25 * u
     pen.rectangles(boxes, np.array(colours))
-    if len(entries) > MOST_ENTRIES:
-        rest = len(entries) - MOST_ENTRIES
+    if len(entries) > MAX_ENTRIES:
+        rest = len(entries) - MAX_ENTRIES
         pen.text(f"and {rest} more", x + 28 * u, y, colour=FADED, size=16)
         y -= 25 * u
     return y - 14 * u
 
 
-def _shortened(name: str, most: int = 20) -> str:
-    return name if len(name) <= most else name[: most - 1] + "…"
+def _shorten(name: str, max_length: int = 20) -> str:
+    return name if len(name) <= max_length else name[: max_length - 1] + "…"
 
 
-def count(number: int) -> str:
-    """A number with its thousands apart."""
+def format_count(number: int) -> str:
+    """Format a number with spaces between thousands."""
     return f"{number:,}".replace(",", " ")

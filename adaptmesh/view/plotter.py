@@ -1,4 +1,4 @@
-"""The plotter: made without complaints, seen from above, written whole or not at all."""
+"""The plotter of pyvista, and writing a picture whole or not at all."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ FORMATS = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG", ".tif": "TIFF", ".tif
 
 
 @contextmanager
-def quiet() -> Iterator[None]:
-    """Keep VTK from printing that there is no X server before it finds another way to draw."""
+def silence_vtk() -> Iterator[None]:
+    """Keep VTK from printing warnings in a block, such as that of a missing X server."""
     from vtkmodules.vtkCommonCore import vtkObject
 
     before = vtkObject.GetGlobalWarningDisplay()
@@ -34,7 +34,7 @@ def quiet() -> Iterator[None]:
 
 
 def make_plotter(frame: Frame, off_screen: bool | None) -> Any:
-    """An empty plotter that looks at the frame from above, without perspective."""
+    """Make an empty plotter with a view of the frame from above, without perspective."""
     import pyvista as pv
 
     plotter: Any = pv.Plotter(
@@ -56,7 +56,7 @@ def make_plotter(frame: Frame, off_screen: bool | None) -> Any:
 
 
 def write_picture(plotter: Any, path: Path) -> None:
-    """Draw the picture and write it, whole or not at all."""
+    """Draw the picture and write it; the file is whole or absent."""
     from PIL import Image
 
     try:
@@ -69,10 +69,10 @@ def write_picture(plotter: Any, path: Path) -> None:
 
 
 def check_path(path: str | os.PathLike[str]) -> Path:
-    """The path of a picture, refused before it is drawn if it could not be written."""
+    """Return the path of a picture; raise `FormatError` if it cannot be written there."""
     target = Path(path)
     if target.suffix.lower() not in FORMATS:
-        raise FormatError(f"{target}: a picture is one of {', '.join(FORMATS)}")
+        raise FormatError(f"{target}: expected a picture of type {', '.join(FORMATS)}")
     if not target.parent.is_dir():
         raise FormatError(f"{target}: there is no directory {target.parent}")
     return target
