@@ -1,4 +1,4 @@
-"""Arguments and options that several commands of the command line share."""
+"""Arguments and options of the command line, with their checks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import typer
 
 
 class Show(str, Enum):
-    """What the colours of a picture mean."""
+    """What a picture is coloured by."""
 
     mesh = "mesh"
     quality = "quality"
@@ -43,7 +43,7 @@ def _checked_bounds(
 
 
 SIZE_HELP = (
-    "Edge length asked for: a number, or an expression of x and y such as "
+    "Requested edge length: a number, or an expression of x and y such as "
     "'0.01 + 0.1*hypot(x, y)'. It is parsed, never executed."
 )
 
@@ -51,13 +51,13 @@ MeshFile = Annotated[
     Path,
     typer.Argument(metavar="MESH", exists=True, dir_okay=False, help="Mesh: .vtu .msh .mesh ..."),
 ]
-Drawn = Annotated[
+MeshOrOutline = Annotated[
     Path,
     typer.Argument(
         metavar="MESH",
         exists=True,
         dir_okay=False,
-        help="Mesh, or a file that holds an outline: its points and sides are then numbered.",
+        help="Mesh, or an outline, which is drawn with the numbers of its points and sides.",
     ),
 ]
 OutlineFile = Annotated[
@@ -67,7 +67,7 @@ OutlineFile = Annotated[
         exists=True,
         dir_okay=False,
         help="What to mesh: polygons (.geojson .wkt .shp), drawings (.svg .dxf), Triangle's .poly, "
-        "Gmsh's .geo, BAMG's .g, or a mesh (.msh .mesh .vtu ...) whose domain is meshed anew.",
+        "Gmsh's .geo, BAMG's .g, or a mesh (.msh .mesh .vtu ...) whose domain is meshed again.",
     ),
 ]
 Size = Annotated[str | None, typer.Option("--size", "-s", metavar="EXPR", help=SIZE_HELP)]
@@ -80,14 +80,14 @@ Metric = Annotated[
         exists=True,
         dir_okay=False,
         help="Sizes or metric tensors: a solution (.sol) at the vertices of the input mesh; a mesh "
-        "(.vtu .msh .vtk .xdmf .mesh) that carries them; or a raster of sizes (.tif).",
+        "(.vtu .msh .vtk .xdmf .mesh) with them as a field; or a raster of sizes (.tif).",
     ),
 ]
 MetricField = Annotated[
     str | None,
     typer.Option(
         metavar="NAME",
-        help="Which field of the mesh given as --metric; 'metric', or the only one, if absent.",
+        help="Field of the mesh given as --metric; by default 'metric' or the only one.",
     ),
 ]
 Output = Annotated[
@@ -102,16 +102,16 @@ MaxVertices = Annotated[
 ]
 
 
-def placements(incomplete: str = "") -> list[str]:
-    """The names of placements, for checks and for the completion of the shell."""
+def list_placements(incomplete: str = "") -> list[str]:
+    """Return the names of placements, for checks and for the completion of the shell."""
     from adaptmesh.generate.generate import PLACEMENTS
 
     return [name for name in PLACEMENTS if name.startswith(incomplete)]
 
 
 def _checked_placement(name: str | None) -> str | None:
-    if name is not None and name not in placements():
-        raise typer.BadParameter(f"a placement is one of {', '.join(placements())}, not {name!r}")
+    if name is not None and name not in list_placements():
+        raise typer.BadParameter(f"expected one of {', '.join(list_placements())}, got {name!r}")
     return name
 
 
@@ -119,7 +119,7 @@ Placement = Annotated[
     str | None,
     typer.Option(
         metavar="NAME",
-        autocompletion=placements,
+        autocompletion=list_placements,
         callback=_checked_placement,
         help="How new points are placed, e.g. 'edges': along long edges.",
     ),
@@ -129,8 +129,8 @@ Gradation = Annotated[
     typer.Option(
         metavar="FACTOR",
         callback=_checked_gradation,
-        help="Let sizes grow by at most this factor from one unit edge to the next, e.g. 1.5; they "
-        "are made smaller where they grow faster.",
+        help="Largest growth of sizes from one unit edge to the next, e.g. 1.5; sizes that grow "
+        "faster are reduced.",
     ),
 ]
 Tolerance = Annotated[
@@ -138,7 +138,7 @@ Tolerance = Annotated[
     typer.Option(
         metavar="LENGTH",
         callback=_checked_length,
-        help="What is nearer is made one; 1e-9 of the extent if absent.",
+        help="Points closer than this are merged; by default 1e-9 of the extent.",
     ),
 ]
 Simplify = Annotated[
@@ -146,14 +146,14 @@ Simplify = Annotated[
     typer.Option(
         metavar="SHARE",
         callback=_checked_length,
-        help="Leave out detail of the outline smaller than this share of the size, e.g. 0.1.",
+        help="Remove detail of the outline smaller than this fraction of the size, e.g. 0.1.",
     ),
 ]
 NoHoles = Annotated[
     bool,
     typer.Option(
         "--no-holes",
-        help="All that the lines of a drawing, or of a script without surfaces, enclose is meshed.",
+        help="Mesh all that the lines of a drawing or of a script without surfaces enclose.",
     ),
 ]
 StraightTolerance = Annotated[
@@ -161,53 +161,53 @@ StraightTolerance = Annotated[
     typer.Option(
         metavar="LENGTH",
         callback=_checked_length,
-        help="How far off a straight line vertices on the border of the mesh may be without being "
-        "corners; by the digits of the coordinates if absent.",
+        help="Largest distance of border vertices from a straight side without being corners; "
+        "by default from the digits of the coordinates.",
     ),
 ]
 Clean = Annotated[
-    bool, typer.Option("--clean", help="Leave out points of the mesh that are in no triangle.")
+    bool, typer.Option("--clean", help="Remove points of the mesh that are in no triangle.")
 ]
 Merge = Annotated[
     float | None,
     typer.Option(
         metavar="LENGTH",
         callback=_checked_length,
-        help="As --clean; and make vertices at most this far apart one, along the seams of blocks.",
+        help="As --clean, and merge vertices at most this far apart, as on the seams of blocks.",
     ),
 ]
 Frozen = Annotated[
     list[str] | None,
     typer.Option(
         metavar="NAME",
-        help="A boundary or line whose edges stay as they are; may be given several times.",
+        help="A boundary or line whose edges are kept; may be given several times.",
     ),
 ]
-HeldAgainst = Annotated[
+ReferenceDomain = Annotated[
     Path | None,
     typer.Option(
         "--domain",
         metavar="FILE",
         exists=True,
         dir_okay=False,
-        help="The domain that was meshed: its points, segments, regions, names have to be there.",
+        help="Domain to check against: the mesh must have its points, segments, regions and names.",
     ),
 ]
-OffLines = Annotated[
+LineTolerance = Annotated[
     float | None,
     typer.Option(
         "--tolerance",
         metavar="LENGTH",
         callback=_checked_length,
-        help="How far off the lines of the domain vertices may be; what rounding leaves if absent.",
+        help="Largest distance of vertices from the lines of the domain; by default rounding.",
     ),
 ]
 Title = Annotated[str | None, typer.Option(metavar="TEXT", help="Heading of the picture.")]
 Bounds = Annotated[
     tuple[float, float, float, float] | None,
-    typer.Option(metavar="X0 Y0 X1 Y1", callback=_checked_bounds, help="Look at this part only."),
+    typer.Option(metavar="X0 Y0 X1 Y1", callback=_checked_bounds, help="Show only this part."),
 ]
 Json = Annotated[
-    bool, typer.Option("--json", help="Print one JSON object instead of text, when all is done.")
+    bool, typer.Option("--json", help="Print one JSON object at the end instead of text.")
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]

@@ -1,6 +1,6 @@
-"""``adaptmesh demo``: two meshes to look at, one by a size map and one by a metric.
+"""``adaptmesh demo``: two meshes with pictures, one for a size map and one for a metric.
 
-Each case is a domain and a field, in a few lines of numpy and shapely; read them as examples.
+Each case is a domain and a field, in a few lines of numpy and shapely.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ Field = Callable[[Floats], Floats]
 
 @dataclass(frozen=True)
 class View:
-    """A picture of a mesh; the file is called after the case and the suffix."""
+    """Options of a picture of a mesh; its file is named after the case and the suffix."""
 
     suffix: str
     show: str
     bounds: tuple[float, float, float, float] | None = None
-    """The window (x0, y0, x1, y1), by default everything."""
+    """Visible box (x0, y0, x1, y1); by default everything."""
     ellipses: bool = False
 
 
 @dataclass(frozen=True)
 class Case:
-    """Something to mesh, and the views of it that are worth a picture."""
+    """A domain, the size or metric field, and the pictures to draw."""
 
     name: str
     title: str
@@ -44,15 +44,17 @@ class Case:
     views: tuple[View, ...]
 
 
-def run(out: Path, say: Callable[[str], object] = print, coarsening: float = 1.0) -> list[Path]:
-    """Mesh the cases, print how well the meshes fit, write them and their pictures.
+def make_demo(
+    out: Path, say: Callable[[str], object] = print, coarsening: float = 1.0
+) -> list[Path]:
+    """Mesh the cases, print reports, and write the meshes and their pictures.
 
     Parameters
     ----------
     out : Path
         An existing folder.
     say : callable
-        Gets each line to print.
+        Called with each line to print.
     coarsening : float
         Factor on all sizes; the number of triangles falls with its square.
 
@@ -89,9 +91,9 @@ def run(out: Path, say: Callable[[str], object] = print, coarsening: float = 1.0
 def iceland(coarsening: float = 1.0) -> Case:
     """Iceland and the sea around it, fine along the coast: a size in kilometres.
 
-    The coast as it is delivered crosses itself. Shapely repairs it, and simplifies it to half of
-    the finest size: smaller capes and inlets than that would ask for smaller triangles. It stays
-    in the mesh as the interface between the regions "land" and "sea".
+    The original coast crosses itself. Shapely repairs it, and simplifies it to half of the finest
+    size, because smaller capes and inlets would need smaller triangles. The coast is the interface
+    between the regions "land" and "sea".
     """
     import shapely
     from scipy.spatial import cKDTree
@@ -123,7 +125,7 @@ def iceland(coarsening: float = 1.0) -> Case:
 
 
 def _data_file(name: str) -> Path:
-    """A data file of the package; in a source tree it lies with the examples."""
+    """Return the path of a data file of the package; in a source tree it is in the examples."""
     package = Path(__file__).parent.parent
     installed = package / "data" / name
     return installed if installed.is_file() else package.parent / "examples" / "data" / name
@@ -132,9 +134,9 @@ def _data_file(name: str) -> Path:
 def aerofoil(coarsening: float = 1.0) -> Case:
     """A NACA 0012 in a far field of 30 chords, with thin triangles along its wall: a metric.
 
-    At distance d from the wall the size across is ``h_wall + growth d``. The size along is that of
-    the nearest point of the wall (see `Wing.spacing`) plus ``growth d``. Both directions grow
-    equally, and so the triangles become isotropic within a chord.
+    At distance d from the wall the size across is ``h_wall + growth d``, and the size along is the
+    spacing at the nearest point of the wall (see `Wing.spacing`) plus ``growth d``. Both grow at
+    the same rate, so that the triangles are isotropic within a chord.
     """
     growth, h_wall, farthest = 0.1, 2e-4 * coarsening, 30.0
     wing = Wing(h_edges=h_wall, coarsening=coarsening)
@@ -170,13 +172,13 @@ def aerofoil(coarsening: float = 1.0) -> Case:
 
 
 def ellipse(centre: tuple[float, float], a: float, b: float, n: int) -> Floats:
-    """Points (n, 2) round an ellipse of half axes a and b."""
+    """Return points (n, 2) on an ellipse with half axes a and b."""
     t = np.linspace(0.0, 2.0 * np.pi, n, endpoint=False)
     return np.array(centre) + np.stack([a * np.cos(t), b * np.sin(t)], axis=1)
 
 
 def packed_metric(normal: Floats, across: Floats, along: Floats) -> Floats:
-    """Metrics (n, 3) of size `across` in the direction of the unit `normal`, `along` beside it."""
+    """Return metrics (n, 3) of size `across` along the unit `normal` and `along` normal to it."""
     nx, ny = normal.T
     p, q = across**-2.0, along**-2.0
     return np.stack(
@@ -186,7 +188,7 @@ def packed_metric(normal: Floats, across: Floats, along: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Wing:
-    """The closed contour of a NACA 0012 of chord 1, and how finely to cut it.
+    """The closed contour of a NACA 0012 of chord 1, and the spacing of points on it.
 
     Half thickness y(x) = 0.6 (0.2969 √x − 0.1260 x − 0.3516 x² + 0.2843 x³ − 0.1036 x⁴); the last
     coefficient, 0.1036 for the original 0.1015, closes the trailing edge (Abbott and von Doenhoff,
@@ -199,7 +201,7 @@ class Wing:
 
     @cached_property
     def contour(self) -> Floats:
-        """Points (n, 2), dense near both edges, counter-clockwise round from the trailing edge."""
+        """Points (n, 2), dense near both edges, counter-clockwise from the trailing edge."""
         theta = np.linspace(0.0, 2.0 * np.pi, 2001)
         x = 0.5 * (1.0 + np.cos(theta))
         root = np.abs(np.cos(0.5 * theta))
@@ -210,7 +212,7 @@ class Wing:
 
     @cached_property
     def normals(self) -> Floats:
-        """Unit normals (n, 2) at the contour points; at the trailing edge that along the chord."""
+        """Unit normals (n, 2) at the contour points; along the chord at the trailing edge."""
         ahead, behind = (
             np.roll(self.contour[:-1], -1, axis=0),
             np.roll(self.contour[:-1], 1, axis=0),
@@ -222,9 +224,9 @@ class Wing:
 
     @cached_property
     def spacing(self) -> Floats:
-        """Size along the wall (n,): limited by curvature, fine at both edges, 0.025 between.
+        """Size along the wall (n,): fine at both edges, at most 0.025 between them.
 
-        At the nose it is a tenth of the radius there, 1.1019 · 0.12² = 0.0159 of the chord.
+        At the nose it is a tenth of the nose radius, 1.1019 · 0.12² = 0.0159 of the chord.
         """
         to_nose = np.linalg.norm(self.contour - (0.0, 0.0), axis=1)
         to_tail = np.linalg.norm(self.contour - (1.0, 0.0), axis=1)
@@ -233,7 +235,7 @@ class Wing:
         return np.minimum(np.minimum(nose, tail), 0.025 * self.coarsening)
 
     def unit_spaced(self) -> Floats:
-        """Points (k, 2) on the contour, one step of `spacing` apart, once round."""
+        """Return points (k, 2) on the closed contour, one step of `spacing` apart."""
         step = np.linalg.norm(np.diff(self.contour, axis=0), axis=1)
         mean = 0.5 * (1.0 / self.spacing[1:] + 1.0 / self.spacing[:-1])
         length = np.concatenate([[0.0], np.cumsum(step * mean)])
@@ -249,7 +251,7 @@ class Wing:
         return cKDTree(self.contour[:-1])
 
     def nearest(self, x: Floats) -> tuple[Floats, Floats, Floats]:
-        """Distance (n,) to the wall, unit direction (n, 2) from it, and spacing (n,) there."""
+        """Return distance (n,) to the wall, unit direction (n, 2) from it, and spacing (n,)."""
         contour = self.contour[:-1]
         _, i = self._tree.query(x)
         distance = np.full(len(x), np.inf)

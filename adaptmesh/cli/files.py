@@ -1,4 +1,4 @@
-"""Files that the commands read and write."""
+"""Reading the input of the commands, and checks of their output paths."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from .output import Speaker
+from .output import Reporter
 
 if TYPE_CHECKING:
     from adaptmesh.domain.domain import Domain
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def check_outputs(mesh: Path | None = None, picture: Path | None = None) -> None:
-    """Find out before the work, not after it, that the result cannot be put there."""
+    """Raise an error before the work if the results cannot be written to these paths."""
     from adaptmesh.io.formats import format_of
     from adaptmesh.view.plotter import check_path
 
@@ -29,33 +29,34 @@ def check_outputs(mesh: Path | None = None, picture: Path | None = None) -> None
 
 
 def check_folder(path: Path) -> None:
+    """Raise a usage error if the folder of a path does not exist."""
     if not path.parent.is_dir():
         raise typer.BadParameter(f"there is no folder {str(path.parent)!r} for {path.name!r}")
 
 
 def is_outline(path: Path) -> bool:
-    """Whether a file holds a domain but no mesh, by its suffix."""
+    """Return whether a file holds a domain but no mesh, by its suffix."""
     from adaptmesh.io.formats import OUTLINES
 
     return path.suffix.lower() in OUTLINES
 
 
-def outline_and_mesh(
+def read_outline_and_mesh(
     path: Path,
     repair: bool,
     tolerance: float | None,
     straight_tolerance: float | None,
     no_holes: bool,
-    speaker: Speaker,
+    reporter: Reporter,
 ) -> tuple[Domain, Mesh | None]:
-    """The domain in a file, and the mesh that it is the domain of, if the file holds one."""
+    """Read a domain, and the mesh that it belongs to if the file holds one."""
     import adaptmesh as am
 
     holes: list[tuple[float, float]] | None = [] if no_holes else None
     if repair:
         domain, repairs = am.repair(path, tolerance, holes=holes)
-        speaker.say(repairs)
-        speaker.note(repairs=[vars(r) for r in repairs])
+        reporter.print(repairs)
+        reporter.record(repairs=[vars(r) for r in repairs])
         return domain, None
     if is_outline(path):
         return am.read_domain(path, holes=holes), None
@@ -63,19 +64,19 @@ def outline_and_mesh(
     return mesh.to_domain(straight_tolerance=straight_tolerance), mesh
 
 
-def cleaned(mesh: Mesh, clean: bool, merge: float | None, speaker: Speaker) -> Mesh:
-    """The mesh, or what `Mesh.cleaned` makes of it if --clean or --merge ask for that."""
+def clean_mesh(mesh: Mesh, clean: bool, merge: float | None, reporter: Reporter) -> Mesh:
+    """Clean a mesh by `Mesh.cleaned` if --clean or --merge is given."""
     if not clean and merge is None:
         return mesh
     new = mesh.cleaned(merge)
     dropped = len(mesh.points) - len(new.points)
-    speaker.say(f"cleaned: {dropped:,} of {len(mesh.points):,} points left out or made one")
-    speaker.note(dropped_points=dropped)
+    reporter.print(f"cleaned: {dropped:,} of {len(mesh.points):,} points removed or merged")
+    reporter.record(dropped_points=dropped)
     return new
 
 
-def fields_for(path: Path, read: Mesh, mesh: Mesh) -> dict[str, Any]:
-    """Arguments of `adaptmesh.write` for the fields in the file of a mesh that may be cleaned."""
+def read_fields_of_mesh(path: Path, read: Mesh, mesh: Mesh) -> dict[str, Any]:
+    """Read the fields of a mesh, which may be cleaned, as arguments of `adaptmesh.write`."""
     import adaptmesh as am
 
     fields = am.read_fields(path)
@@ -86,13 +87,13 @@ def fields_for(path: Path, read: Mesh, mesh: Mesh) -> dict[str, Any]:
     return {"fields": of_points, "triangle_fields": of_triangles}
 
 
-def field_of(path: Path, name: str) -> Any:
-    """A field of real numbers in a mesh file."""
+def read_field(path: Path, name: str) -> Any:
+    """Read a field of real numbers from a mesh file."""
     import adaptmesh as am
 
     fields = am.read_fields(path)
     plain = [key for key, values in fields.items() if values.ndim == 1]
     if name not in plain:
         known = ", ".join(map(repr, plain)) or "none"
-        raise typer.BadParameter(f"--field {name}: the file has no such field; it has {known}")
+        raise typer.BadParameter(f"--field: expected one of the fields {known}, got {name!r}")
     return fields[name]

@@ -1,4 +1,4 @@
-"""The control space that --size or --metric asks for."""
+"""The control space given by --size or --metric."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ RASTER_SUFFIXES = (".tif", ".tiff", ".asc", ".nc", ".grd")
 
 
 class Request:
-    """What --size, --metric and --metric-field ask for, checked before any file is read.
+    """The values of --size, --metric and --metric-field, checked before any file is read.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class Request:
 
     @property
     def is_empty(self) -> bool:
-        """Whether neither is given."""
+        """Whether neither --size nor --metric is given."""
         return self.size is None and self.metric is None
 
     def refuse_empty(self) -> None:
@@ -61,18 +61,18 @@ class Request:
             raise typer.BadParameter("give one of --size and --metric")
 
     def refuse_without_mesh(self) -> None:
-        """Raise a usage error if the metric is that of the vertices of a mesh."""
+        """Raise a usage error if the metric is a solution, which needs a mesh."""
         if self.metric is not None and self.metric.suffix.lower() in SOLUTION_SUFFIXES:
             raise typer.BadParameter(
-                f"--metric {self.metric} gives values at the vertices of a mesh, and DOMAIN is an "
-                "outline without any: use --size, a metric in a mesh file or a raster, or give the "
-                "mesh as DOMAIN"
+                f"--metric {self.metric} holds values at the vertices of a mesh, but DOMAIN is an "
+                "outline: use --size, a metric in a mesh file or a raster, or give the mesh as "
+                "DOMAIN"
             )
 
     def control_space(self, mesh: Mesh | None, cleaned: Mesh | None = None) -> ControlSpace:
-        """The control space; values of a solution belong to the vertices of `mesh`.
+        """Make the control space; the values of a solution belong to the vertices of `mesh`.
 
-        They are carried by what became of this mesh by `Mesh.cleaned`, if that is given.
+        `cleaned`, if given, is this mesh after `Mesh.cleaned`, and becomes the background mesh.
         """
         if self.size is not None:
             return self.size
@@ -86,28 +86,28 @@ class Request:
 
             return metrics.Raster.read(self.metric)
         assert mesh is not None
-        return _of_solution(self.metric, mesh, mesh if cleaned is None else cleaned)
+        return _read_solution(self.metric, mesh, mesh if cleaned is None else cleaned)
 
 
-def _of_solution(path: Path, mesh: Mesh, carrier: Mesh) -> ControlSpace:
+def _read_solution(path: Path, mesh: Mesh, carrier: Mesh) -> ControlSpace:
     import adaptmesh as am
     from metrics import Background
 
     values = am.read_sol(path)
     if len(values) != len(mesh.points):
         raise FormatError(
-            f"{path} has values for {len(values)} vertices, but the mesh has {len(mesh.points)}: "
-            "they do not belong together"
+            f"{path}: expected values for the {len(mesh.points)} vertices of the mesh, got "
+            f"{len(values)}"
         )
     if carrier is not mesh:
         values = values[carrier.kept]
     return Background(carrier.points, carrier.triangles, values)
 
 
-def graded(
+def grade(
     domain: Domain, control: ControlSpace, gradation: float | None, max_vertices: int | None
 ) -> ControlSpace:
-    """The metric that the mesh is made and measured for."""
+    """Grade the metric if --gradation is given."""
     if gradation is None:
         return control
     from adaptmesh.generate.generate import MAX_VERTICES, graded_within_budget

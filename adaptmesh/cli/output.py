@@ -1,4 +1,4 @@
-"""What a command says: text on its way, one JSON object at its end, or nothing; and errors."""
+"""Output of the commands: text, one JSON object, or nothing; errors and warnings."""
 
 from __future__ import annotations
 
@@ -18,52 +18,52 @@ EXIT_BAD = 1
 EXIT_INTERRUPTED = 130
 
 
-class Speaker:
-    """Reports of a command on standard output.
+class Reporter:
+    """Prints the results of a command to standard output.
 
     Parameters
     ----------
     quiet : bool
-        Say nothing.
+        Print nothing.
     as_json : bool
         Instead of text, print one JSON object when the command is done.
     """
 
     def __init__(self, quiet: bool = False, as_json: bool = False) -> None:
         if quiet and as_json:
-            raise typer.BadParameter("--quiet prints nothing and --json an object: give one")
+            raise typer.BadParameter("give one of --quiet and --json")
         self.is_silent = quiet or as_json
         self.as_json = as_json
         self.facts: dict[str, Any] = {}
 
-    def say(self, text: object) -> None:
-        """Print text now, for people."""
+    def print(self, text: object) -> None:
+        """Print text, unless quiet or as JSON."""
         if not self.is_silent:
             write(str(text))
 
-    def note(self, **facts: Any) -> None:
-        """Keep facts for the JSON object."""
+    def record(self, **facts: Any) -> None:
+        """Add facts to the JSON object."""
         self.facts.update(facts)
 
     def finish(self) -> None:
-        """Print the JSON object, if one was asked for."""
+        """Print the JSON object, if requested."""
         if self.as_json:
             write(json.dumps(self.facts, indent=1, allow_nan=False))
 
 
 def write(text: str) -> None:
-    """Print to standard output; if its reader has left, as in ``| head``, go on without."""
+    """Print to standard output; ignore a closed pipe, as of ``| head``."""
     try:
         typer.echo(text)
     except BrokenPipeError:
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, sys.stdout.fileno())  # what is still in the buffer goes there, too
-        os.close(nowhere)
+        devnull = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(devnull, sys.stdout.fileno())  # also for the rest of the buffer
+        os.close(devnull)
 
 
 @contextmanager
-def neat_errors() -> Iterator[None]:
-    """Turn what the user can mend into a message and an exit code; let our own mistakes show."""
+def report_errors() -> Iterator[None]:
+    """Turn errors of the input into a message and an exit code; let bugs raise tracebacks."""
     try:
         yield
     except AdaptmeshError as error:
@@ -76,8 +76,8 @@ def neat_errors() -> Iterator[None]:
 
 
 @contextmanager
-def refused_as_usage() -> Iterator[None]:
-    """Take arguments that the library refuses, once it has seen the data, for wrong usage."""
+def report_as_usage_error() -> Iterator[None]:
+    """Report a `ValueError` of the library about an argument as wrong usage."""
     try:
         yield
     except AdaptmeshError:
@@ -91,8 +91,8 @@ def _fail(message: str) -> NoReturn:
     raise typer.Exit(EXIT_BAD) from None
 
 
-def show_warnings_neatly() -> None:
-    """Print warnings as one line on standard error, without the line of code."""
+def shorten_warnings() -> None:
+    """Print warnings to standard error as one line, without the line of code."""
 
     def show(message: Warning | str, *_: object, **__: object) -> None:
         heading = typer.style("warning: ", fg=typer.colors.YELLOW, bold=True)

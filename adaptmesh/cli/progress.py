@@ -1,4 +1,4 @@
-"""A progress bar for people: on the terminal, only when the work takes long enough to wonder."""
+"""A progress bar on the terminal, for work that takes more than a second."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 class TerminalProgress:
     """A progress bar that `generate(..., progress=...)` can call.
 
-    It stays silent when the stream is not a terminal, and during the first `delay` seconds: most
-    meshes are there before anybody looks. Use it as a context manager; leaving it removes the bar.
+    Nothing is drawn if the stream is not a terminal, and in the first `delay` seconds. Use it as a
+    context manager, which removes the bar at the end.
 
     Parameters
     ----------
@@ -44,11 +44,11 @@ class TerminalProgress:
         if not self._stream.isatty() or time.monotonic() < self._appears_at:
             return
         if self._bar is None or self._task is None:
-            self._bar = self._drawn()
+            self._bar = self._start_bar()
             self._task = self._bar.add_task(stage, total=1.0)
         self._bar.update(self._task, description=stage, completed=min(max(fraction, 0.0), 1.0))
 
-    def _drawn(self) -> RichProgress:
+    def _start_bar(self) -> RichProgress:
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 

@@ -170,7 +170,7 @@ def test_straight_tolerance_of_a_border_with_rounded_coordinates(run, transform)
     assert counts["adapt", "--straight-tolerance"] == counts["generate", "--straight-tolerance"]
     assert counts["adapt", "--straight-tolerance"] < 15 < counts["adapt",]
     of_outline = ("generate", "plate.geojson", "-s", "1", "-o", "out.vtu")
-    usage(run(*of_outline, "--straight-tolerance", "1"), "is for the border of a mesh")
+    usage(run(*of_outline, "--straight-tolerance", "1"), "--straight-tolerance needs a mesh")
 
 
 def seam(transform):
@@ -196,7 +196,7 @@ def test_loose_and_double_points_are_cleaned_with_fields_and_metric(run, transfo
     done(run("convert", "seam.vtu", "clean.vtu", "--clean"))
     assert len(am.read("clean.vtu").points) == len(mesh.points) - 1
     merge = ("--merge", repr(1e-6 * unit))
-    assert "points left out or made one" in done(run("convert", "seam.vtu", "whole.vtk", *merge))
+    assert "points removed or merged" in done(run("convert", "seam.vtu", "whole.vtk", *merge))
     checks = json.loads(run("check", "whole.vtk", "--json").stdout)["checks"]
     assert {c["name"] for c in checks if not c["ok"]} == {"border is constrained"}  # has no edges
     whole, fields = am.read("whole.vtk"), am.read_fields("whole.vtk")
@@ -244,7 +244,7 @@ def test_keep_edits_the_mesh(run):
     assert kept["kept_vertices"] > 0.8 * first["vertices"]
     usage(
         run("adapt", "a.vtu", "-s", "1", "-o", "out.vtu", "--keep", "--placement", "edges"),
-        "--placement is that of a new mesh",
+        "one of --placement and --keep",
     )
 
 
@@ -256,7 +256,10 @@ def test_plot_of_a_field_with_bounds_and_title(run, monkeypatch):
     mesh = am.read("carrier.vtu")
     np.testing.assert_allclose(seen["show"], mesh.points[:, 0] * mesh.points[:, 1])
     assert (seen["bounds"], seen["title"]) == ((0.5, 0.5, 2.0, 2.0), "T")
-    usage(run("plot", "carrier.vtu", "--field", "x", "-o", "out.png"), "has 'temperature', 'other'")
+    usage(
+        run("plot", "carrier.vtu", "--field", "x", "-o", "out.png"),
+        "the fields 'temperature', 'other'",
+    )
     both = ("--field", "other", "--show", "size")
     usage(run("plot", "carrier.vtu", *both, "-o", "out.png"), "--show and --field")
     wrong = ("--bounds", "1", "0", "0", "1")
@@ -268,7 +271,7 @@ def test_plot_of_a_field_with_bounds_and_title(run, monkeypatch):
 @pytest.mark.parametrize("drawn", ["plain.vtu", "plate.geojson"])
 def test_plot_of_a_part_where_nothing_is(run, drawn):
     away = ("--bounds", "50", "50", "60", "60")
-    usage(run("plot", drawn, *away, "-o", "out.png"), "no triangle is in sight")
+    usage(run("plot", drawn, *away, "-o", "out.png"), "no triangle in this box")
 
 
 def test_plot_of_an_outline_numbers_its_points_and_sides(run, monkeypatch):

@@ -10,7 +10,7 @@ from adaptmesh.cli import demo
 @pytest.mark.slow
 def test_everything_is_written_and_reported(tmp_path):
     lines = []
-    written = demo.run(tmp_path, say=lines.append, coarsening=8.0)
+    written = demo.make_demo(tmp_path, say=lines.append, coarsening=8.0)
     assert {path.suffix for path in written} == {".vtu", ".png"}
     assert all(path.stat().st_size > 1000 for path in written)
     assert sorted(tmp_path.iterdir()) == sorted(written)
