@@ -61,7 +61,7 @@ def overlaps(faces: Mapping[int, Any], share: float) -> list[tuple[int, int, flo
     """Pairs of surfaces with more than this share of the smaller one in common, and that area."""
     import shapely
 
-    numbers, areas = list(faces), list(faces.values())
+    numbers, areas = list(faces), np.array([*faces.values()], dtype=object)
     tree = shapely.STRtree(areas)
     first, second = tree.query(areas, predicate="intersects")
     out = []

@@ -165,8 +165,6 @@ def test_what_is_no_mesh_is_named(plate):
     for wrong in (None, plate):
         with pytest.raises(am.DomainError, match="expected a Mesh, got"):
             am.adapt(wrong, 0.3)
-        with pytest.raises(am.DomainError, match="expected a Mesh, got"):
-            wrong.to_domain()
 
 
 @pytest.mark.parametrize(
