@@ -13,25 +13,23 @@ from adaptmesh.adapt.adapt import adapt
 from adaptmesh.checks import expect_function
 from adaptmesh.errors import BudgetError, MetricError
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.transfer.transfer import transfer as transfer_fields
 from adaptmesh.value import FrozenMapping
 from metrics import Background, Limits, nodal_lengths
 
 from .base_history import PathLike
 from .errors import LoopError, LoopInterrupted
+from .field_transfer import check_transfer, transfer_fields
+from .first_mesh import default_h_max, with_domain
 from .history import History
 from .iteration import Iteration
 from .records import Snapshot
 from .resume import (
-    check_transfer,
-    default_h_max,
     is_saved_in,
     load_earlier,
     options_as_text,
     prepare_folder,
-    with_domain,
 )
-from .solution import Solution, check_solution, space_of
+from .solution import Solution, check_solution
 from .solve import Solve
 from .step import Step
 from .stopping import Budget, StoppingRule
@@ -255,8 +253,7 @@ class Adaptation:
         )
 
     def _transfer(self, solution: Solution, old: Mesh, new: Mesh) -> Any:
-        spaces = {name: space_of(values, old) for name, values in solution.fields.items()}
-        fields = transfer_fields(solution.fields, old, new, method=self.transfer, space=spaces)
+        fields = transfer_fields(solution.fields, old, new, self.transfer)
         return solution.as_returned(fields)
 
 

@@ -1,41 +1,19 @@
-"""What a loop begins with: its first mesh, an earlier history, and the folder to save to."""
+"""What a loop is resumed from: an earlier history, asked for the same, and its folder."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
-from adaptmesh.geometry.smallest_rectangle import longer_side
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.transfer.transfer import METHODS
 
 from .base_history import BaseHistory, PathLike
 
 H = TypeVar("H", bound=BaseHistory)
-
-SHARE_OF_EXTENT = 0.25  # the largest size, where none is given
-
-
-def with_domain(mesh: Mesh) -> Mesh:
-    """The mesh with its domain, found once."""
-    if not isinstance(mesh, Mesh):
-        raise TypeError(f"expected a Mesh to begin with, got {type(mesh).__name__}")
-    return mesh if mesh.domain is not None else replace(mesh, domain=mesh.to_domain())
-
-
-def default_h_max(mesh: Mesh) -> float:
-    """The largest size where none is given: a share of the mesh, whichever way it is turned."""
-    return SHARE_OF_EXTENT * longer_side(mesh.points)
-
-
-def check_transfer(method: str) -> None:
-    """Raise for a way to transfer fields that there is not."""
-    if method not in METHODS:
-        raise ValueError(f"transfer={method!r}: expected one of {', '.join(map(repr, METHODS))}")
 
 
 def load_earlier(resume: H | PathLike | None, kind: type[H], mesh: Mesh) -> H:

@@ -17,8 +17,8 @@ comes.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,30 +27,19 @@ from numpy.typing import ArrayLike
 from adaptmesh.adapt.adapt import adapt
 from adaptmesh.checks import expect_function, expect_whole
 from adaptmesh.mesh.mesh import Mesh
-from adaptmesh.transfer.transfer import transfer as transfer_fields
 from adaptmesh.types import Floats
-from adaptmesh.value import FrozenMapping
 from metrics import Background, Limits
 
+from .advance import Advance
 from .base_history import PathLike
 from .errors import TransientError, TransientInterrupted
+from .first_mesh import default_h_max, with_domain
 from .records import Interval
-from .resume import (
-    check_transfer,
-    default_h_max,
-    load_earlier,
-    options_as_text,
-    prepare_folder,
-    with_domain,
-)
-from .solution import Solution, check_solution, space_of
+from .resume import load_earlier, options_as_text, prepare_folder
 from .step import Step
 from .target_in_time import TargetInTime
 from .transient_history import TransientHistory
 from .vertex_count import check_reachable
-
-ROUNDING = 1e-9
-"""Share of an interval by which the last time may miss its end, as sums of steps do."""
 
 
 def transient_loop(
@@ -168,7 +157,7 @@ def transient_loop(
         in_time=in_time,
     )
     check_reachable(target_vertices, mesh, limits.h_max)
-    solver = _Solver(initial, advance, transfer, keep_bounds)
+    advancing = Advance(initial, advance, transfer, keep_bounds)
     history = _resume(resume, mesh, ends, target)
     folder = prepare_folder(save, history, resume)
     fitted: list[Background] = []
@@ -186,8 +175,8 @@ def transient_loop(
                         )
                 with step.timed("adapt"):
                     here = adapt(before[number].mesh, fitted[number])
-            first = solver.first(here, history.intervals[-1] if number else None, step)
-            interval = solver.advance_interval(here, first, ends[number : number + 2], target, step)
+            first = advancing.first(here, history.intervals[-1] if number else None, step)
+            interval = advancing.interval(here, first, ends[number : number + 2], target, step)
             step.history = history = history.with_interval(interval, sweep)
             if folder is not None:
                 step.stage = "save"
@@ -196,121 +185,6 @@ def transient_loop(
                 step.stage = "callback"
                 callback(sweep, number, interval)
     return history
-
-
-@dataclass(frozen=True)
-class _Solver:
-    """What the user gave, and the form in which fields come and go."""
-
-    initial: Callable[[Mesh], Any]
-    advance: Callable[[Mesh, Any, float, float], Any]
-    method: str
-    keep_bounds: bool
-
-    def __post_init__(self) -> None:
-        for name in ("initial", "advance"):
-            if not callable(getattr(self, name)):
-                kind = type(getattr(self, name)).__name__
-                raise TypeError(f"{name} must be a function, got {kind}")
-        check_transfer(self.method)
-
-    def first(self, mesh: Mesh, before: Interval | None, step: Step[TransientHistory]) -> Solution:
-        """The fields at the start of an interval: the initial ones, or those of the one before."""
-        if before is None:
-            with step.timed("solve", "initial"):
-                return _fields_of(self.initial(mesh), mesh, "initial")
-        with step.timed("transfer"):
-            there = transfer_fields(
-                before.last,
-                before.mesh,
-                mesh,
-                method=self.method,
-                space={name: space_of(values, before.mesh) for name, values in before.last.items()},
-                keep_bounds=self.keep_bounds,
-            )
-            return replace(check_solution(there, mesh), is_bare=before.is_bare)
-
-    def advance_interval(
-        self,
-        mesh: Mesh,
-        first: Solution,
-        ends: Floats,
-        target: TargetInTime,
-        step: Step[TransientHistory],
-    ) -> Interval:
-        """Go through an interval."""
-        with step.timed("metric"):
-            times, hessians = [float(ends[0])], [target.hessians(mesh, first.fields)]
-        last = first
-        for t, given in self.samples(mesh, first, float(ends[0]), float(ends[1]), step):
-            last = _fields_of(given, mesh, "advance")
-            if last.fields.keys() != first.fields.keys():
-                raise ValueError(
-                    f"advance gave {_names(last)} at t = {t:g}, but began with {_names(first)}: "
-                    "fields keep their names"
-                )
-            with step.timed("metric"):
-                times.append(t)
-                hessians.append(target.hessians(mesh, last.fields))
-        step.stage = "advance"
-        if times[-1] != ends[1]:
-            raise ValueError(
-                f"advance stopped at t = {times[-1]:g}; the interval ends at {ends[1]:g}"
-            )
-        with step.timed("metric"):
-            over_time = target.over_time(np.array(times), hessians)
-        return Interval(
-            start=times[0],
-            end=times[-1],
-            mesh=mesh,
-            first=first.fields,
-            last=last.fields,
-            times=np.array(times),
-            hessians=FrozenMapping(dict(over_time)),
-            seconds=step.seconds,
-            is_bare=first.is_bare,
-        )
-
-    def samples(
-        self, mesh: Mesh, first: Solution, t0: float, t1: float, step: Step[TransientHistory]
-    ) -> Iterator[tuple[float, Any]]:
-        """What advance yields, or the fields at the end if it returns these."""
-        with step.timed("solve", "advance"):
-            answer = self.advance(mesh, first.as_returned(first.fields), t0, t1)
-        if not isinstance(answer, Iterator):
-            yield t1, answer
-            return
-        before = t0
-        while True:
-            with step.timed("solve", "advance"):
-                sample = next(answer, None)
-            if sample is None:
-                return
-            if not isinstance(sample, tuple) or len(sample) != 2:
-                raise TypeError(
-                    "expected a time and the fields then, `yield t, fields`: advance yielded "
-                    f"{type(sample).__name__}"
-                )
-            t = float(sample[0])
-            if abs(t - t1) <= ROUNDING * (t1 - t0):
-                t = t1
-            if not before < t <= t1:
-                raise ValueError(f"advance came from t = {before:g} to {t:g}; the end is {t1:g}")
-            before = t
-            yield t, sample[1]
-
-
-def _fields_of(answer: Any, mesh: Mesh, function: str) -> Solution:
-    solution = check_solution(answer, mesh, function)
-    if solution.metric is not None or solution.errors:
-        raise TypeError(
-            f"{function} returned a metric or errors: in time meshes are adapted to fields only"
-        )
-    return solution
-
-
-def _names(solution: Solution) -> str:
-    return ", ".join(map(repr, solution.fields))
 
 
 def _check_times(times: ArrayLike) -> Floats:

@@ -9,7 +9,7 @@ from reference.transforms import SIMILARITIES
 
 import adaptmesh as am
 import metrics
-from adaptmesh.loop.resume import default_h_max
+from adaptmesh.loop.first_mesh import default_h_max
 
 
 def front(x):
