@@ -1,8 +1,8 @@
 """Metric lengths along curved sides, and the parameters that cut them into unit parts.
 
 As on straight edges, the metric is asked for in rounds, at points of all sides at once: a chord is
-trusted when its own length and that of its halves agree, and halved otherwise. The ends of chords
-are on the curve, so that the metric is seen where the vertices will be.
+trusted when its own length and that of its halves agree (core/mesher/chord.hpp), and halved
+otherwise. The ends of chords are on the curve, so that the metric is seen where vertices will be.
 """
 
 from __future__ import annotations
@@ -12,22 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from adaptmesh import ragged
-from adaptmesh._core import (
-    AGREEMENT,
-    FINE_DEPTH,
-    LONGEST_CHORD,
-    LONGEST_FINE_CHORD,
-    SHORTEST_CHORD,
-)
+from adaptmesh._core import LONGEST_CHORD, halve_chords
 from adaptmesh.domain.side import SideParts, Sides
 from adaptmesh.errors import BudgetError
 from adaptmesh.types import Array, Floats, Index
-from metrics import ControlSpace
-from metrics.tensor import lengths
-
-# Chords of curves are halved no more often; the other bounds are those of the core, which does the
-# same on straight lines: see core/edge_sampler.hpp.
-DEEPEST = 45
+from metrics import ControlSpace, tensor
 
 
 @dataclass(frozen=True)
@@ -71,6 +60,16 @@ class MeasuredParts:
         return out
 
 
+def inscribed_chords(sides: Sides, parts: SideParts) -> tuple[Index, Floats]:
+    """Chords that cover curved parts: the part and the parameters of each."""
+    rows = []
+    for side, (low, high) in zip(parts.side.tolist(), parts.u.tolist(), strict=True):
+        u = sides.inscribed[side - sides.n_straight]
+        rows.append(np.concatenate([[low], u[(low < u) & (u < high)], [high]]))
+    part = ragged.owners(np.array([len(row) - 1 for row in rows]))
+    return part, np.concatenate([np.stack([row[:-1], row[1:]], axis=1) for row in rows])
+
+
 def measure_parts(
     sides: Sides,
     parts: SideParts,
@@ -91,43 +90,46 @@ def measure_parts(
         A boundary of many more unit parts than this is refused.
     """
     part, u = chords
-    places = sides.point(parts.side[np.repeat(part, 2)], u.ravel())
-    tensors = metric(places)
-    chord = np.arange(2 * len(part)).reshape(-1, 2)  # its ends, by place
+    side = parts.side
+    ends = sides.point(side[np.repeat(part, 2)], u.ravel())
+    points, tensors = ends.reshape(-1, 2, 2), metric(ends).reshape(-1, 2, 3)
+    lengths = tensor.lengths(tensors[:, 0], tensors[:, 1], points[:, 1] - points[:, 0])
+    by_speeds = np.zeros(len(part), bool)
     trusted: list[list[Array]] = []
     depth = 0
-    while len(chord):
-        _check_budget(len(chord), max_vertices, places[chord[0, 0]])
-        middle = len(places) + np.arange(len(chord))
-        u_middle = u.mean(axis=1)
-        new = sides.point(parts.side[part], u_middle)
-        places, tensors = np.concatenate([places, new]), np.concatenate([tensors, metric(new)])
-        left, right = (np.stack(e, axis=1) for e in ((chord[:, 0], middle), (middle, chord[:, 1])))
-        whole, one, other = (_lengths(places, tensors, e) for e in (chord, left, right))
-        both = one + other
-        longest = LONGEST_CHORD if depth < FINE_DEPTH else LONGEST_FINE_CHORD
-        enough = (np.abs(whole - both) <= AGREEMENT * both) & (both <= longest)
-        enough |= (both <= SHORTEST_CHORD) | (depth >= DEEPEST)
-        halves = (
+    while len(part):
+        _check_budget(len(part), max_vertices, points[0, 0])
+        middle = u.mean(axis=1)
+        new = sides.point(side[part], middle)
+        points, tensors = _with_middles(points, new), _with_middles(tensors, metric(new))
+        halves, by_speeds, enough = halve_chords(points, tensors, lengths, by_speeds, depth)
+        rows: list[Array] = [
             np.repeat(part, 2),
-            np.stack([u[:, 0], u_middle, u_middle, u[:, 1]], axis=1).reshape(-1, 2),
-            np.stack([left, right], axis=1).reshape(-1, 2),
-            np.stack([one, other], axis=1).ravel(),
-        )
-        kept = np.repeat(enough, 2)
-        trusted.append([a[kept] for a in halves])
-        part, u, chord = halves[0][~kept], halves[1][~kept], halves[2][~kept]
+            _halved(_with_middles(u, middle)),
+            _halved(points),
+            _halved(tensors),
+            halves.ravel(),
+        ]
+        done = np.repeat(enough, 2)
+        trusted.append([a[done] for a in rows])
+        part, u, points, tensors, lengths = (a[~done] for a in rows)
+        by_speeds = np.repeat(by_speeds, 2)[~done]
         depth += 1
-    part, u, chord, length = (np.concatenate(a) for a in zip(*trusted, strict=True))
+    part, u, points, tensors, lengths = (np.concatenate(a) for a in zip(*trusted, strict=True))
     order = np.lexsort((u[:, 0], part))
-    vectors = places[chord[:, 1]] - places[chord[:, 0]]
-    speeds = np.stack([lengths(m, m, vectors) for m in (tensors[chord[:, i]] for i in (0, 1))], 1)
-    return MeasuredParts(part[order], u[order], length[order], speeds[order])
+    vectors = points[:, 1] - points[:, 0]
+    speeds = [tensor.lengths(tensors[:, k], tensors[:, k], vectors) for k in (0, 1)]
+    return MeasuredParts(part[order], u[order], lengths[order], np.stack(speeds, axis=1)[order])
 
 
-def _lengths(places: Floats, tensors: Floats, chord: Index) -> Floats:
-    a, b = chord.T
-    return lengths(tensors[a], tensors[b], places[b] - places[a])
+def _with_middles(ends: Floats, middles: Floats) -> Floats:
+    """What chords (k, 2, ...) have at both ends, and half way between."""
+    return np.stack([ends[:, 0], middles, ends[:, 1]], axis=1)
+
+
+def _halved(stations: Floats) -> Floats:
+    """What the halves (2 k, 2, ...) of chords have at their ends, from chords (k, 3, ...)."""
+    return stations[:, [[0, 1], [1, 2]]].reshape(-1, 2, *stations.shape[2:])
 
 
 def _check_budget(n_chords: int, max_vertices: int, near: Floats) -> None:

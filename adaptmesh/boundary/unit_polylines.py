@@ -24,7 +24,7 @@ from adaptmesh.types import Floats, Index
 from metrics import ControlSpace
 
 from .edge_lengths import measured_edges, straight_lengths
-from .measure_curves import equal_shares, measure_parts
+from .measure_curves import equal_shares, inscribed_chords, measure_parts
 from .vertex_limit import about
 
 MAX_TURN = MESH_TURN
@@ -88,7 +88,7 @@ def _curved(
     sides: Sides, parts: SideParts, rest: SidePoints, metric: ControlSpace, max_vertices: int
 ) -> Polylines:
     """Cut the parts by their lengths along the curves, and again where edges are too long."""
-    chords = _inscribed_chords(sides, parts)
+    chords = inscribed_chords(sides, parts)
     measured = measure_parts(sides, parts, chords, metric, max_vertices)
     cuts = measured.unit_cuts(_min_parts(sides, parts, chords))
     for _ in range(MAX_CUTS):
@@ -105,16 +105,6 @@ def _curved(
 
 def _points_of(parts: SideParts, cuts: list[Floats]) -> SidePoints:
     return SidePoints(np.repeat(parts.side, [len(u) for u in cuts]), np.concatenate(cuts))
-
-
-def _inscribed_chords(sides: Sides, parts: SideParts) -> tuple[Index, Floats]:
-    """Chords that cover curved parts: the part and the parameters of each."""
-    rows = []
-    for side, (low, high) in zip(parts.side.tolist(), parts.u.tolist(), strict=True):
-        u = sides.inscribed[side - sides.n_straight]
-        rows.append(np.concatenate([[low], u[(low < u) & (u < high)], [high]]))
-    part = ragged.owners(np.array([len(row) - 1 for row in rows]))
-    return part, np.concatenate([np.stack([row[:-1], row[1:]], axis=1) for row in rows])
 
 
 def _min_parts(sides: Sides, parts: SideParts, chords: tuple[Index, Floats]) -> Index:

@@ -52,14 +52,45 @@ auto cut_to_unit(const EdgeSampler& sampler) {
     return std::make_tuple(column(std::move(shares)), column(std::move(edges)));
 }
 
+template <int Columns>
+using Triples = nb::ndarray<const double, nb::shape<-1, 3, Columns>, nb::c_contig, nb::device::cpu>;
+
+// Chords of curves, by their ends and the points of the curves half way, halved once more.
+auto halve_chords(const Triples<2>& points, const Triples<3>& tensors, const Values& lengths,
+                  const Flags& by_speeds, int depth) {
+    const std::size_t n = points.shape(0);
+    expect_rows(tensors.shape(0), n, "tensors");
+    expect_rows(lengths.shape(0), n, "lengths");
+    expect_rows(by_speeds.shape(0), n, "by_speeds");
+    const auto at = [&](std::size_t i, int k) {
+        return station(0.5 * k, {tensors(i, k, 0), tensors(i, k, 1), tensors(i, k, 2)});
+    };
+    const auto vector = [&](std::size_t i, int from, int to) {
+        return Point{points(i, to, 0) - points(i, from, 0), points(i, to, 1) - points(i, from, 1)};
+    };
+    const ChordRule rule{LONGEST_CHORD};
+    std::vector<double> halves(2 * n);
+    std::vector<std::uint8_t> are_by_speeds(n), are_trusted(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Station from = at(i, 0), middle = at(i, 1), to = at(i, 2);
+        const double whole = chord_length(from, to, vector(i, 0, 2)).by_speeds;
+        const Halves h =
+            rule.halve({lengths(i), whole}, chord_length(from, middle, vector(i, 0, 1)),
+                       chord_length(middle, to, vector(i, 1, 2)), by_speeds(i), depth);
+        halves[2 * i] = h.first, halves[2 * i + 1] = h.second;
+        are_by_speeds[i] = h.are_by_speeds, are_trusted[i] = h.are_trusted;
+    }
+    return std::make_tuple(rows<2>(std::move(halves)), flags(std::move(are_by_speeds)),
+                           flags(std::move(are_trusted)));
+}
+
 }  // namespace
 
 void bind_sampler(nb::module_& m) {
     m.attr("LONGEST_CHORD") = LONGEST_CHORD;
-    m.attr("AGREEMENT") = EdgeSampler::AGREEMENT;
-    m.attr("SHORTEST_CHORD") = EdgeSampler::SHORTEST_CHORD;
-    m.attr("FINE_DEPTH") = EdgeSampler::FINE_DEPTH;
-    m.attr("LONGEST_FINE_CHORD") = EdgeSampler::LONGEST_FINE_CHORD;
+    m.def("halve_chords", &halve_chords, nb::arg("points"), nb::arg("tensors"), nb::arg("lengths"),
+          nb::arg("by_speeds"), nb::arg("depth"),
+          "Halve chords: the lengths of the halves, whether by speeds, and whether trusted.");
     nb::class_<EdgeSampler>(m, "MeasuredEdges", "Straight edges, measured with the exact metric.")
         .def("__init__", &measure_edges, nb::arg("points"), nb::arg("tensors"), nb::arg("edges"),
              nb::arg("metric"), nb::arg("max_vertices"),

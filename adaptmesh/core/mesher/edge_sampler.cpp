@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adaptmesh/core/geometry/point.hpp"
+#include "adaptmesh/core/mesher/chord.hpp"
 #include "adaptmesh/core/mesher/metric_field.hpp"
 #include "adaptmesh/core/monitor.hpp"
 #include "adaptmesh/core/triangulation/triangulation.hpp"
@@ -74,23 +75,21 @@ std::array<double, 2> EdgeSampler::moments(Index e) const {
 }
 
 EdgeSampler::Halved EdgeSampler::halve(const Chord& c, const Tensor& metric) const {
-    const Station middle{0.5 * (c.from.t + c.to.t), metric, metrics::sqrt_det(metric)};
-    Chord left = chord(c.edge, c.depth + 1, c.from, middle);
-    Chord right = chord(c.edge, c.depth + 1, middle, c.to);
-    double whole = c.length, halves = left.length + right.length;
-    const double start = speed(c, c.from), half_way = speed(c, middle), end = speed(c, c.to);
-    const double whole_by_speeds = by_speeds(start, end);
-    const double first = 0.5 * by_speeds(start, half_way);
-    const double second = 0.5 * by_speeds(half_way, end);
-    if (c.is_by_speeds || is_turned(whole, whole_by_speeds) || is_turned(halves, first + second)) {
-        whole = whole_by_speeds, halves = first + second;
-        left.length = first, right.length = second;
-        left.is_by_speeds = right.is_by_speeds = true;
-    }
-    const bool agree = std::abs(whole - halves) <= AGREEMENT * halves;
-    const double longest = c.depth < FINE_DEPTH ? longest_chord_ : LONGEST_FINE_CHORD;
-    return {left, right, halves,
-            (agree && halves <= longest) || halves <= SHORTEST_CHORD || c.depth >= DEEPEST};
+    const Station middle = station(0.5 * (c.from.t + c.to.t), metric);
+    const Point v = edges_[c.edge].vector;
+    const double dt = c.to.t - c.from.t, half = 0.5 * dt;
+    const double start = dt * speed(c.from, v), half_way = dt * speed(middle, v),
+                 end = dt * speed(c.to, v);
+    const Point w{half * v.x, half * v.y};
+    const Halves h =
+        rule_.halve({c.length, length_by_speeds(start, end)},
+                    {length_by_ends(c.from, middle, w), 0.5 * length_by_speeds(start, half_way)},
+                    {length_by_ends(middle, c.to, w), 0.5 * length_by_speeds(half_way, end)},
+                    c.is_by_speeds, c.depth);
+    return {{c.edge, c.depth + 1, c.from, middle, h.first, h.are_by_speeds},
+            {c.edge, c.depth + 1, middle, c.to, h.second, h.are_by_speeds},
+            h.first + h.second,
+            h.are_trusted};
 }
 
 void EdgeSampler::split(const std::vector<Chord>& chords, const std::vector<Tensor>& middles) {

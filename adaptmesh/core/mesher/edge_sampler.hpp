@@ -4,15 +4,7 @@
 // sampler *asks in rounds*: it asks for the metric at the midpoints of all chords it is not sure
 // of, splits the chords that still disagree with their halves, and so on until none is left. Then
 // every edge is a row of pieces, each with its length and the speed |e|_M at both ends.
-//
-//        A-----------------B      chord: length by its ends, l(A, B)
-//        A--------M--------B      with the metric at M: l(A, M) + l(M, B); if both agree -> two
-//                                 pieces, else two chords, asked about in the next round
-//
-// A length by its ends takes the geometric mean of the metrics there for the metric half way. That
-// of two thin ellipses turned against each other is nearly round, and lengths in it are far too
-// small: where the axes turn, a chord and its halves can agree on a third of the true length. The
-// speeds at the ends still do: see `by_speeds`.
+// See chord.hpp for when a chord is trusted.
 #pragma once
 
 #include <algorithm>
@@ -22,6 +14,7 @@
 #include <vector>
 
 #include "adaptmesh/core/geometry/point.hpp"
+#include "adaptmesh/core/mesher/chord.hpp"
 #include "adaptmesh/core/mesher/metric_field.hpp"
 #include "adaptmesh/core/monitor.hpp"
 #include "adaptmesh/core/triangulation/triangulation.hpp"
@@ -47,27 +40,14 @@ class EdgeSampler {
   public:
     // More chords at once would be a mesh of millions of vertices, and a gigabyte of memory.
     static constexpr std::size_t MAX_CHORDS = 8'000'000;
-    // A chord is trusted when its own length and that of its halves agree to this share (the
-    // halves are then right to about a tenth of it), if ...
-    static constexpr double AGREEMENT = 0.05;
-    // Shorter ones are trusted as they are: they cannot change the count of points.
-    static constexpr double SHORTEST_CHORD = 0.05;
-    // From a thousandth of the edge on, chords may be longer than asked for.
-    static constexpr int FINE_DEPTH = 10;
-    static constexpr double LONGEST_FINE_CHORD = 4.0;
-    // Axes turn where a length by the ends is less than that by the speeds by more than this share,
-    // which is 2/3 at the most between equal speeds. With less, meshes of layers that bend, which
-    // are measured well by the ends, would change.
-    static constexpr double TURNED = 0.46;
-    static constexpr int DEEPEST = 1000;    // the end of halving doubles
     static constexpr double UNSEEN = 0.02;  // share of an edge, see moments()
 
-    // ... and it is no longer than `longest_chord`: finer detail can pass unseen between samples.
+    // Chords are no longer than `longest_chord`: finer detail can pass unseen between samples.
     // Edges shorter than `uncut_below` will not be cut: only their lengths are kept. Of edges
     // longer than `longest_edge` nobody wants to know how long they are: they are not looked at
     // closer.
     EdgeSampler(double longest_chord, double longest_edge, double uncut_below)
-        : longest_chord_(longest_chord), longest_edge_(longest_edge), uncut_below_(uncut_below) {}
+        : rule_{longest_chord}, longest_edge_(longest_edge), uncut_below_(uncut_below) {}
 
     // Forgets all edges, but keeps their memory.
     void clear();
@@ -77,8 +57,8 @@ class EdgeSampler {
     void add(Point a, const Tensor& metric_a, Point b, const Tensor& metric_b) {
         const Index edge = Index(edges_.size());
         edges_.push_back({a, {b.x - a.x, b.y - a.y}});
-        chords_.push_back(chord(edge, 0, {0.0, metric_a, metrics::sqrt_det(metric_a)},
-                                {1.0, metric_b, metrics::sqrt_det(metric_b)}));
+        const Station from = station(0.0, metric_a), to = station(1.0, metric_b);
+        chords_.push_back({edge, 0, from, to, length_by_ends(from, to, edges_.back().vector)});
         lengths_.push_back(0.0);
     }
 
@@ -107,11 +87,6 @@ class EdgeSampler {
         Point from;
         Point vector;
     };
-    struct Station {  // a point on an edge, and the metric there
-        double t;
-        Tensor metric;
-        double sqrt_det;
-    };
     struct Chord {
         Index edge;
         int depth;
@@ -125,30 +100,6 @@ class EdgeSampler {
         double length;
         bool is_trusted;
     };
-
-    Chord chord(Index edge, int depth, const Station& from, const Station& to) const {
-        const Point v = edges_[edge].vector;
-        const double dt = to.t - from.t;
-        return {edge, depth, from, to,
-                metrics::length(from.metric, from.sqrt_det, to.metric, to.sqrt_det, dt * v.x,
-                                dt * v.y)};
-    }
-
-    // The length of a chord is that of its vector at the metric there.
-    double speed(const Chord& c, const Station& at) const {
-        const Point v = edges_[c.edge].vector;
-        return (c.to.t - c.from.t) * std::sqrt(std::max(at.metric.q(v.x, v.y), 0.0));
-    }
-
-    // Simpson's rule with the geometric mean of the two speeds half way: the same as by the metrics
-    // at the ends where the edge lies along their common axes, and never less.
-    static double by_speeds(double start, double end) {
-        return (start + 4 * std::sqrt(start * end) + end) * (1.0 / 6);
-    }
-
-    static bool is_turned(double by_ends, double by_speeds) {
-        return by_speeds - by_ends > TURNED * by_speeds;
-    }
 
     Halved halve(const Chord& c, const Tensor& metric) const;
 
@@ -173,7 +124,7 @@ class EdgeSampler {
 
     FieldPoint point_in_piece(const Chord& p, double share) const;
 
-    double longest_chord_;
+    ChordRule rule_;
     double longest_edge_;
     double uncut_below_;
     std::vector<Edge> edges_;

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference.transforms import SIMILARITIES
 
@@ -26,6 +26,7 @@ def pairs_of(points):
     return list(zip(points.side.tolist(), points.u.tolist(), strict=True))
 
 
+@settings(deadline=None)
 @given(FEW, FEW)
 def test_points_of_sides_are_sets_in_order(one, other):
     a, b = points_of(one), points_of(other)
@@ -38,6 +39,7 @@ def test_points_of_sides_are_sets_in_order(one, other):
     assert a.counts(4).tolist() == [sum(s == k for s, _ in pairs_of(a)) for k in range(4)]
 
 
+@settings(deadline=None)
 @given(FEW, st.permutations([(0, 0, 2), (0, 2, 3), (0, 5, 6), (2, 1, 4), (3, 0, 6)]))
 def test_points_within_parts(pairs, parts):
     points = points_of(pairs)
@@ -55,6 +57,7 @@ def test_points_of_no_sides():
     assert none.within(SideParts(np.empty(0, int), np.empty((0, 2)))).size == 0
 
 
+@settings(deadline=None)
 @given(st.lists(st.integers(0, 4), max_size=8))
 def test_ragged_rows(counts):
     counts = np.array(counts, int)
