@@ -55,6 +55,13 @@ auto cut_to_unit(const EdgeSampler& sampler) {
 template <int Columns>
 using Triples = nb::ndarray<const double, nb::shape<-1, 3, Columns>, nb::c_contig, nb::device::cpu>;
 
+// Exactly, as there are few of them, and metrics along walls are the thinnest.
+ChordLength chord_length(const Tensor& from, const Tensor& to, Point v) {
+    const double start = metrics::exact_length(from, v.x, v.y);
+    const double end = metrics::exact_length(to, v.x, v.y);
+    return {metrics::exact_length(from, to, v.x, v.y), length_by_speeds(start, end)};
+}
+
 // Chords of curves, by their ends and the points of the curves half way, halved once more.
 auto halve_chords(const Triples<2>& points, const Triples<3>& tensors, const Values& lengths,
                   const Flags& by_speeds, int depth) {
@@ -62,21 +69,20 @@ auto halve_chords(const Triples<2>& points, const Triples<3>& tensors, const Val
     expect_rows(tensors.shape(0), n, "tensors");
     expect_rows(lengths.shape(0), n, "lengths");
     expect_rows(by_speeds.shape(0), n, "by_speeds");
-    const auto at = [&](std::size_t i, int k) {
-        return station(0.5 * k, {tensors(i, k, 0), tensors(i, k, 1), tensors(i, k, 2)});
-    };
-    const auto vector = [&](std::size_t i, int from, int to) {
-        return Point{points(i, to, 0) - points(i, from, 0), points(i, to, 1) - points(i, from, 1)};
-    };
     const ChordRule rule{LONGEST_CHORD};
     std::vector<double> halves(2 * n);
     std::vector<std::uint8_t> are_by_speeds(n), are_trusted(n);
     for (std::size_t i = 0; i < n; ++i) {
-        const Station from = at(i, 0), middle = at(i, 1), to = at(i, 2);
-        const double whole = chord_length(from, to, vector(i, 0, 2)).by_speeds;
-        const Halves h =
-            rule.halve({lengths(i), whole}, chord_length(from, middle, vector(i, 0, 1)),
-                       chord_length(middle, to, vector(i, 1, 2)), by_speeds(i), depth);
+        const auto length = [&](int from, int to) {
+            const auto metric = [&](int k) {
+                return Tensor{tensors(i, k, 0), tensors(i, k, 1), tensors(i, k, 2)};
+            };
+            const Point v{points(i, to, 0) - points(i, from, 0),
+                          points(i, to, 1) - points(i, from, 1)};
+            return chord_length(metric(from), metric(to), v);
+        };
+        const Halves h = rule.halve({lengths(i), length(0, 2).by_speeds}, length(0, 1),
+                                    length(1, 2), by_speeds(i), depth);
         halves[2 * i] = h.first, halves[2 * i + 1] = h.second;
         are_by_speeds[i] = h.are_by_speeds, are_trusted[i] = h.are_trusted;
     }

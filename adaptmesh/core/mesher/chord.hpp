@@ -52,10 +52,6 @@ struct ChordLength {
     double by_ends, by_speeds;
 };
 
-inline ChordLength chord_length(const Station& from, const Station& to, Point v) {
-    return {length_by_ends(from, to, v), length_by_speeds(speed(from, v), speed(to, v))};
-}
-
 // The two halves of a chord.
 struct Halves {
     double first, second;  // their lengths
