@@ -1,6 +1,6 @@
 """FEniCSx, <https://fenicsproject.org>: meshes of dolfinx, and tags of cells and facets.
 
-dolfinx numbers cells and vertices anew and keeps the old numbers in `original_cell_index` and
+dolfinx renumbers cells and vertices, and keeps the old numbers in `original_cell_index` and
 `input_global_indices`, through which everything here goes. It has no names: what comes out are the
 numbers of `Mesh.names` and `Mesh.region_names`.
 
@@ -73,8 +73,8 @@ def to_dolfinx(
     keys = edge_keys(ends, n)
     order = np.argsort(keys)
     edges = mesh.edges[tagged]
-    wanted = edge_keys(edges, n)
-    facets = order[np.searchsorted(keys, wanted, sorter=order)].astype(np.int32)
+    ours = edge_keys(edges, n)
+    facets = order[np.searchsorted(keys, ours, sorter=order)].astype(np.int32)
     by_facet = np.argsort(facets)  # as meshtags wants them
     tags = mesh.edge_tags[tagged][by_facet]
     return domain, cell_tags, dolfinx.mesh.meshtags(domain, 1, facets[by_facet], tags)
@@ -144,7 +144,7 @@ def vertex_values_of_dolfinx(function: dolfinx.fem.Function) -> Floats:
     dofs, width = _table(space.dofmap.list, len(numbering.corners)), space.dofmap.index_map_bs
     if dofs.shape[1] < 3 or (width == 1 and space.num_sub_spaces > 0):
         raise ValueError(
-            "a Lagrange function of order 1 or more is wanted, which has a value at each vertex; "
+            "expected a Lagrange function of order 1 or more, which has a value at each vertex; "
             "interpolate into one, and take mixed functions apart with .sub(i).collapse()"
         )
     values = function.x.array.reshape(-1, width)

@@ -51,9 +51,9 @@ def tags_of_sets(
         The names to be taken; all if not given.
     """
     sets = sets or {}
-    wanted = list(sets if chosen is None else chosen)
+    names = list(sets if chosen is None else chosen)
     tags = np.zeros(count, np.int32)
-    for tag, name in enumerate(wanted, start=1):
+    for tag, name in enumerate(names, start=1):
         if name not in sets:
             raise FormatError(f"no {what} is in a set {name!r}; the sets are: {', '.join(sets)}")
         items = np.asarray(sets[name], dtype=np.int64)
@@ -65,13 +65,13 @@ def tags_of_sets(
             )
         twice = items[tags[items] != 0]
         if len(twice):
-            other = wanted[tags[twice[0]] - 1]
+            other = names[tags[twice[0]] - 1]
             raise FormatError(
                 f"{what} {twice[0]} is in both {other!r} and {name!r}; a mesh has one name for "
                 "each: say which names to take"
             )
         tags[items] = tag
-    return tags, {name: tag for tag, name in enumerate(wanted, start=1)}
+    return tags, {name: tag for tag, name in enumerate(names, start=1)}
 
 
 def split_fields(mesh: Mesh, fields: Mapping[str, ArrayLike]) -> tuple[Fields, Fields]:
@@ -87,7 +87,7 @@ def split_fields(mesh: Mesh, fields: Mapping[str, ArrayLike]) -> tuple[Fields, F
             of_triangles[name] = values
         else:
             raise ValueError(
-                f"the field {name!r} has shape {values.shape}: {n} values at the points are "
-                f"wanted, or {m} of the triangles"
+                f"the field {name!r}: expected {n} values at the points, or {m} of the triangles, "
+                f"got shape {values.shape}"
             )
     return at_points, of_triangles

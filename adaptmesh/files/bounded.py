@@ -76,7 +76,7 @@ def whole_number(text: str | bytes, what: str = "a count") -> int:
     """The whole number that a text is, at least 0; blanks around it do not matter."""
     digits = text.strip()
     if not (digits.isascii() and digits.isdigit() and len(digits) <= LONGEST_INTEGER):
-        raise FormatError(f"{what} was expected, found {_shown(text)}")
+        raise FormatError(f"expected {what}, got {_shown(text)}")
     return int(digits)
 
 
@@ -84,7 +84,7 @@ def signed_number(text: str, what: str = "a whole number") -> int:
     """The whole number that a text is, with or without a sign."""
     sign, digits = (text[:1], text[1:]) if text[:1] in ("-", "+") else ("", text)
     if not digits[:1].isdigit():
-        raise FormatError(f"{what} was expected, found {_shown(text)}")
+        raise FormatError(f"expected {what}, got {_shown(text)}")
     number = whole_number(digits, what)
     return -number if sign == "-" else number
 

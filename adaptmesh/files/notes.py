@@ -13,7 +13,7 @@ class Notes:
 
     def __init__(self, content: Any) -> None:
         if not isinstance(content, dict):
-            raise FormatError(f"an object of JSON was expected, found {content!r:.60}")
+            raise FormatError(f"expected an object of JSON, got {content!r:.60}")
         self._content: dict[str, Any] = content
 
     def __contains__(self, key: str) -> bool:

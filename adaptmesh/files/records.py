@@ -128,7 +128,7 @@ def table(binary: bool, *columns: tuple[str, ArrayLike]) -> bytes:
 def _word_array(words: list[bytes]) -> Array:
     longest = max(words, key=len, default=b"0")
     if len(longest) > _LONGEST_NUMBER:
-        raise FormatError(f"a number was expected, found {longest[:24]!r}...")
+        raise FormatError(f"expected a number, got {longest[:24]!r}...")
     return np.array(words, dtype=f"S{len(longest)}")
 
 
@@ -140,7 +140,7 @@ def _parsed(words: Array, code: str) -> Array:
         pass
     wrong = next(word for word in words.ravel() if not _parses(word, kind))
     what = "a number" if code[0] == "f" else "an integer"
-    raise FormatError(f"{what} was expected, found {bytes(wrong)!r}")
+    raise FormatError(f"expected {what}, got {bytes(wrong)!r}")
 
 
 def _parses(word: Any, kind: type) -> bool:

@@ -50,7 +50,7 @@ def outgoing(
 ) -> Content:
     """The content of a file of that mesh and those fields."""
     if not isinstance(mesh, Mesh):
-        raise TypeError(f"a Mesh is wanted, not {type(mesh).__name__}")
+        raise TypeError(f"expected a Mesh, got {type(mesh).__name__}")
     n, m = len(mesh.points), len(mesh.triangles)
     if not m:
         raise FormatError("the mesh has no triangles; there is nothing to write")
@@ -121,14 +121,14 @@ def _field(name: str, values: ArrayLike) -> Array:
     if name in _RESERVED:
         raise FormatError(f"{name!r} is the name of what the file holds anyway; rename the field")
     if not isinstance(name, str):
-        raise FormatError(f"{name!r} cannot be the name of a field: it is no text")
+        raise FormatError(f"{name!r} cannot be the name of a field: expected a text")
     if not name or not name.isprintable() or set(name) & set('"$&<>') or name != name.strip():
         raise FormatError(
             f'{name!r} cannot be the name of a field; leave out " $ & < > and blanks at its ends'
         )
     array = _real(f"field {name!r}", values)
     if array.ndim == 0 or 0 in array.shape[1:]:
-        raise FormatError(f"field {name!r} has shape {array.shape}; it must be (n,) or (n, ...)")
+        raise FormatError(f"field {name!r}: expected shape (n,) or (n, ...), got {array.shape}")
     if array.ndim == 2 and array.shape[1] == 1:
         array = array[:, 0]
     if array.dtype.kind == "b":
@@ -153,4 +153,4 @@ def _of_few_columns(what: str, array: Array) -> Array:
         return array[:, 0]
     if array.ndim == 1 or (array.ndim == 2 and array.shape[1] in (2, 3)):
         return array
-    raise FormatError(f"{what} has shape {array.shape}; it must be (n,), (n, 2) or (n, 3)")
+    raise FormatError(f"{what}: expected shape (n,), (n, 2) or (n, 3), got {array.shape}")

@@ -84,7 +84,7 @@ class _Geometry:
             keyword = str(word, "ascii", "replace")
             with located(keyword):
                 if not keyword.isalnum() or keyword.isdigit():
-                    raise FormatError("a keyword was expected here: a count may be wrong")
+                    raise FormatError("expected a keyword here: a count may be wrong")
                 if keyword in _READERS:
                     _READERS[keyword](geometry, cursor)
                 elif keyword in ("CrackedEdges", "Triangles"):

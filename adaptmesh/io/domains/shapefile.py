@@ -2,7 +2,7 @@
 
 The attribute ``name``, in any case, names the region of each polygon; without a ``.dbf`` beside the
 ``.shp`` none has a name. It is in the encoding that the ``.cpg`` or the header of the ``.dbf``
-names, else, and where that cannot be, in one of `metrics.text`. Measures at the points are passed
+names, else, and where that cannot be, in one of `adaptmesh.files.encodings`. Measures at the points are passed
 over.
 """
 

@@ -51,9 +51,7 @@ def _geometries(text: str, path: Path) -> Iterator[tuple[int, str]]:
         opening = _OPENING.match(text, start)
         if opening is None:
             found = text[start : start + 24].split()[0]
-            raise FormatError(
-                f"{path}, line {line}: POLYGON or the like was expected, not {found!r}"
-            )
+            raise FormatError(f"{path}, line {line}: expected POLYGON or the like, got {found!r}")
         with located(f"{path}, line {line}"):
             at = _closing(text, opening.end()) if opening[0].endswith("(") else opening.end()
         if at < 0:

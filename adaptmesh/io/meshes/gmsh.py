@@ -41,7 +41,8 @@ from adaptmesh.mesh.incoming import Content
 from adaptmesh.mesh.periodic_sides import checked_rows
 from adaptmesh.types import Array
 
-from . import gmsh22, gmsh40, gmsh41, gmsh_old
+from . import gmsh22, gmsh41, gmsh_old
+from .gmsh4 import READERS_4_0, READERS_4_1
 from .gmsh_groups import in_several, name_several
 from .gmsh_sections import DIMENSION_OF_TYPE, Elements, Sections, section
 from .spatial import plane_fields, shaped, shapes, spatial, spatial_tensor, take_metric
@@ -93,7 +94,7 @@ def _sections(data: bytes) -> Iterator[tuple[str, bytes]]:
     while at < end_of_file:
         opening = re.compile(rb"\s*\$(\w+)[ \t\r]*\n").match(data, at)
         if not opening:
-            raise FormatError(f"a section $Name was expected, found {data[at : at + 24]!r}")
+            raise FormatError(f"expected a section $Name, got {data[at : at + 24]!r}")
         name = opening.group(1)
         closing = (b"$END" if name in (b"NOD", b"ELM") else b"$End") + name
         end = data.find(closing, opening.end())
@@ -105,10 +106,8 @@ def _sections(data: bytes) -> Iterator[tuple[str, bytes]]:
 
 def _readers(version: str) -> Mapping[str, Callable[[Cursor, Sections], None]]:
     """The readers of the sections of a version, by name."""
-    by_version = {"1": gmsh_old.READERS_1, "3": gmsh_old.READERS_3, "4": gmsh41.READERS}
-    return (
-        gmsh40.READERS if version in _VERSIONS_4_0 else by_version.get(version[0], gmsh22.READERS)
-    )
+    by_version = {"1": gmsh_old.READERS_1, "3": gmsh_old.READERS_3, "4": READERS_4_1}
+    return READERS_4_0 if version in _VERSIONS_4_0 else by_version.get(version[0], gmsh22.READERS)
 
 
 def _cursor(body: bytes, order: str | None) -> TextCursor | BinaryCursor:

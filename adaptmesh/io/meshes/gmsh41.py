@@ -1,85 +1,20 @@
-"""The sections of Gmsh's version 4.1 that hold the mesh: entities, nodes, elements.
+"""The sections of Gmsh's version 4.1 that hold the mesh, to be written; `gmsh4` reads them.
 
-An element is in the physical group of its entity. We write one curve entity for each edge tag, one
-surface entity for each region::
-
-    $Entities            tag, box, physical groups, bounding entities (none: we do not know them)
-    $Nodes               blocks by entity:  dim entity parametric count, tags, coordinates
-    $Elements            blocks by entity:  dim entity type count, (tag, vertices) by row
-
-Source: Gmsh reference manual, "MSH file format".
+We write one curve entity for each edge tag, one surface entity for each region, and no bounding
+entities: we do not know them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from adaptmesh.errors import FormatError
-from adaptmesh.files.records import Cursor, one, table
+from adaptmesh.files.records import table
 from adaptmesh.mesh.incoming import Content
 from adaptmesh.types import Array
 
-from .gmsh_sections import NODES_OF_TYPE, Elements, Sections, refuse_element_types, section
-
-# ---------------------------------------------------------------------------------------- reading
-
-
-def _read_entities(cursor: Cursor, out: Sections) -> None:
-    counts = cursor.rows(1, ("u8", 4))[0][0]
-    for dim, count in enumerate(counts.tolist()):
-        for _ in range(count):
-            tag, _ = cursor.rows(1, ("i4", 1), ("f8", 3 if dim == 0 else 6))
-            groups = cursor.rows(one(cursor, "u8"), ("i4", 1))[0]
-            out.groups[dim, int(tag[0, 0])] = [abs(g) for g in groups[:, 0].tolist()]
-            if dim > 0:
-                cursor.rows(one(cursor, "u8"), ("i4", 1))
-
-
-def _read_nodes(cursor: Cursor, out: Sections) -> None:
-    blocks, count, *_ = cursor.rows(1, ("u8", 4))[0][0].tolist()
-    tags, points = [out.node_tags], [out.points]
-    for _ in range(blocks):
-        dim, _, parametric = cursor.rows(1, ("i4", 3))[0][0].tolist()
-        size = one(cursor, "u8")
-        extra = dim if parametric == 1 and 0 <= dim <= 3 else 0
-        tags.append(cursor.rows(size, ("u8", 1))[0][:, 0])
-        points.append(cursor.rows(size, ("f8", 3 + extra))[0][:, :3])
-    out.node_tags, out.points = np.concatenate(tags), np.concatenate(points)
-    if len(out.points) != count:
-        raise FormatError(f"{count} nodes are announced, {len(out.points)} are there")
-
-
-def _read_elements(cursor: Cursor, out: Sections) -> None:
-    blocks, count, *_ = cursor.rows(1, ("u8", 4))[0][0].tolist()
-    found: dict[int, list[Elements]] = {}
-    done = 0
-    for _ in range(blocks):
-        dim, entity, kind = cursor.rows(1, ("i4", 3))[0][0].tolist()
-        size = one(cursor, "u8")
-        refuse_element_types({kind: size})
-        if not size:
-            continue
-        tags, nodes = cursor.rows(size, ("u8", 1), ("u8", NODES_OF_TYPE[kind]))
-        group = np.full(size, out.group_of(dim, entity) if kind != 15 else 0)
-        found.setdefault(kind, []).append(Elements(tags[:, 0], nodes, group))
-        done += size
-    if done != count:
-        raise FormatError(f"{count} elements are announced, {done} are there")
-    for kind, parts in found.items():
-        out.add(kind, parts)
-
-
-READERS: dict[str, Callable[[Cursor, Sections], None]] = {
-    "Entities": _read_entities,
-    "Nodes": _read_nodes,
-    "Elements": _read_elements,
-}
-
-
-# ---------------------------------------------------------------------------------------- writing
+from .gmsh_sections import section
 
 
 class Entity(NamedTuple):

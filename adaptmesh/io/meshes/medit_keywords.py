@@ -94,7 +94,7 @@ class TextFile:
             self.lacks_end = True
             return "End"
         if not word.isalnum() or word.isdigit():
-            raise FormatError(f"a keyword was expected, found {word[:24]!r}: a count may be wrong")
+            raise FormatError(f"expected a keyword, got {word[:24]!r}: a count may be wrong")
         return word.decode()
 
     def skip(self) -> None:

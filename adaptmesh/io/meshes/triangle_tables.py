@@ -79,9 +79,9 @@ class Table:
         if len(lines) < count:
             raise self._ended(f"{what} {len(lines)} of {count}")
 
-        def wrong(row: int, wanted: str) -> FormatError:
+        def wrong(row: int, expected: str) -> FormatError:
             found = " ".join(lines[row])
-            return self.error(f"{what} {row} of {count} {wanted}, not {found!r}", row - count)
+            return self.error(f"{what} {row} of {count} {expected}, not {found!r}", row - count)
 
         for row, words in enumerate(lines):
             if len(words) < width:

@@ -135,7 +135,7 @@ def content_of(grid: Grid) -> Content:
     """The triangles, edges and fields of a grid, without the names."""
     points = grid.points
     if points.ndim != 2 or points.shape[1] != 3:
-        raise FormatError(f"the points have shape {points.shape}; three coordinates were expected")
+        raise FormatError(f"expected points of three coordinates, got shape {points.shape}")
     triangles, edges, is_triangle, is_edge, others = _cells(grid)
     _same_lengths("points", grid.point_data, len(points))
     _same_lengths("cells", grid.cell_data, len(grid.types))

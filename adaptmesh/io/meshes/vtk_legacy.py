@@ -68,7 +68,7 @@ class LegacyFile:
         """A word of a line, if it has as many."""
         if words is None or len(words) <= place:
             found = "the end" if words is None else " ".join(words)[:60]
-            raise FormatError(f"{place + 1} words were expected, found {found!r}: is it complete?")
+            raise FormatError(f"expected {place + 1} words, got {found!r}: is it complete?")
         return words[place]
 
     def whole(self, words: list[str] | None, place: int) -> int:

@@ -217,7 +217,7 @@ def _grids(domain: Element) -> Iterator[Element]:
             kind = grid.get("CollectionType", grid.get("GridType"))
             raise FormatError(
                 f"grid {grid.get('Name')!r} is a collection ({kind}), such as a time series; save "
-                "the step that is wanted as a grid of its own"
+                "one step as a grid of its own"
             )
         yield grid
 
@@ -349,9 +349,9 @@ def _take_tags(content: Content, grid: _Grid) -> None:
 
 def _matched(triangles: Array, tagged: Array, tags: Array) -> Array:
     """The tag of each triangle, 0 where it has none."""
-    wanted = np.sort(tagged, axis=1)
+    ours = np.sort(tagged, axis=1)
     known = np.sort(triangles, axis=1)
-    both = np.concatenate([known, wanted])
+    both = np.concatenate([known, ours])
     _, group = np.unique(both, axis=0, return_inverse=True)
     group = group.ravel()
     number_of = np.full(group.max() + 1, -1)

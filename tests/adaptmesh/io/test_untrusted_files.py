@@ -60,7 +60,7 @@ LONG = "1" * 5000  # Python's `int` takes 4300 digits
 def test_whole_numbers(text):
     assert bounded.whole_number(" 17\n") == 17
     assert bounded.whole_number(b"17") == 17
-    with pytest.raises(am.FormatError, match="a count was expected"):
+    with pytest.raises(am.FormatError, match="expected a count"):
         bounded.whole_number(text)
 
 

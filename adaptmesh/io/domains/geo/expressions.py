@@ -138,8 +138,8 @@ class Reader:
 
     def expect(self, *texts: str) -> Token:
         if not self.has(*texts):
-            wanted = " or ".join(map(repr, texts))
-            raise self.error(f"{wanted} was expected, not {self.token.text!r}", NotReadError)
+            known = " or ".join(map(repr, texts))
+            raise self.error(f"expected {known}, got {self.token.text!r}", NotReadError)
         return self.next()
 
     def error(self, message: str, kind: type[FormatError] = FormatError) -> FormatError:
@@ -269,7 +269,7 @@ class Reader:
             return float(token.text.lower().replace("d", "e"))
         if token.kind != "name":
             self.at -= 1
-            raise self.error(f"a number was expected, not {token.text!r}", NotReadError)
+            raise self.error(f"expected a number, got {token.text!r}", NotReadError)
         if token.text in _NEW:
             return self.variables.new(token.text)
         if token.text in FUNCTIONS and self.has("(", "["):
@@ -281,7 +281,7 @@ class Reader:
                 raise self.error(f"{token.text} has no element {index:g}, only {len(values)}")
             return values[int(index)]
         if len(values) != 1:
-            message = f"{token.text} is a list of {len(values)}; a number was expected"
+            message = f"expected a number, got {token.text}, a list of {len(values)}"
             raise self.error(message, NotReadError)
         return values[0]
 

@@ -80,7 +80,7 @@ class _Statements(Reader):
             return
         token = self.token
         if token.kind != "name":
-            raise self.error(f"a statement was expected, not {token.text!r}", NotReadError)
+            raise self.error(f"expected a statement, got {token.text!r}", NotReadError)
         word = token.text
         if word == "For":
             self._for()

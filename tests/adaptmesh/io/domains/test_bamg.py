@@ -141,7 +141,7 @@ def test_subdomains_beside_curved_edges(g):
         (CURVED["smooth"].replace("Dimension 2", "Dimension 3"), "Dimension: .*dimension 2"),
         (CURVED["smooth"].replace("Vertices 8", "Vertices 9"), "Vertices: .*found b'Edges'"),
         (CURVED["smooth"].replace("Vertices 8", "Vertices 999999999999"), "Vertices: cut short"),
-        (CURVED["smooth"].replace("Edges 8", "Edges 7"), "a keyword was expected"),
+        (CURVED["smooth"].replace("Edges 8", "Edges 7"), "expected a keyword"),
         (CURVED["smooth"].replace("1 2 3\n", "1 9 3\n"), "Edges: row 1 names 9.*vertices 1 to 8"),
         (CURVED["smooth"].replace("1 2 3\n", "1 1 3\n"), r"Edges: row 1: both ends are \(1\.0"),
         (CURVED["smooth"].replace("1.0 0.0 1", "nan 0.0 1"), r"Vertices: row 1 is \(nan, 0\)"),

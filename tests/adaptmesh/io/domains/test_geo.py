@@ -150,7 +150,7 @@ def test_expressions():
     ("text", "says"),
     [
         ("", "no curves"),
-        ("Point(1) = {0, 0", "line 1.*'}' was expected"),
+        ("Point(1) = {0, 0", "line 1.*expected '}'"),
         (
             "Point(1) = {0, 0, 1}; Point(2) = {1, 0, 0}; Line(1) = {1, 2};",
             "line 1.*z = 1|not plane",
