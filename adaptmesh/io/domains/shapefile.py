@@ -2,8 +2,8 @@
 
 The attribute ``name``, in any case, names the region of each polygon; without a ``.dbf`` beside the
 ``.shp`` none has a name. It is in the encoding that the ``.cpg`` or the header of the ``.dbf``
-names, else, and where that cannot be, in one of `adaptmesh.files.encodings`. Measures at the points are passed
-over.
+names, else, and where that cannot be, in one of `adaptmesh.files.encodings`. Measures at the
+points are passed over.
 """
 
 from __future__ import annotations

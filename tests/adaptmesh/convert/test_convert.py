@@ -77,7 +77,7 @@ def test_grid_holds_triangles_lines_and_fields():
 
 @pytest.mark.parametrize("to", [convert.to_pyvista, convert.to_meshio])
 def test_field_that_does_not_fit_is_refused(to):
-    with pytest.raises(ValueError, match="'u' has shape"):
+    with pytest.raises(ValueError, match="'u': expected"):
         to(MESH, u=np.zeros(3))
 
 

@@ -443,7 +443,10 @@ def test_msh_two_groups_of_one_surface(file):
         ),
         (msh22(elements=[(1, 3, 0, 1, 2, 3, 4)]), "quadrilaterals; only triangles"),
         (msh22().replace("\n4 0 1 0", "\n3 0 1 0"), "node 3 is there twice"),
-        (msh41(nodes="1 5 1 4\n2 1 0 4\n1\n2\n3\n4\n" + "0 0 0\n" * 4), "5 nodes are announced, 4"),
+        (
+            msh41(nodes="1 5 1 4\n2 1 0 4\n1\n2\n3\n4\n" + "0 0 0\n" * 4),
+            "expected 5 nodes, as announced, got 4",
+        ),
         (msh41(before="$PartitionedEntities\n\n$EndPartitionedEntities\n"), "save it whole"),
         (msh41(before='$PhysicalNames\n2\n1 1 "a"\n$EndPhysicalNames\n'), "number of names"),
         (msh41(before="$PhysicalNames\n1\n1 1 a\n$EndPhysicalNames\n"), "dimension, tag,"),

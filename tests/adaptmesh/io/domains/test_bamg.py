@@ -139,7 +139,7 @@ def test_subdomains_beside_curved_edges(g):
         (b"\xff\xfe\0", "is not a text file"),
         ("MeshVersionFormatted 0\nDimension 2\n", "no Edges"),
         (CURVED["smooth"].replace("Dimension 2", "Dimension 3"), "Dimension: .*dimension 2"),
-        (CURVED["smooth"].replace("Vertices 8", "Vertices 9"), "Vertices: .*found b'Edges'"),
+        (CURVED["smooth"].replace("Vertices 8", "Vertices 9"), "Vertices: .*got b'Edges'"),
         (CURVED["smooth"].replace("Vertices 8", "Vertices 999999999999"), "Vertices: cut short"),
         (CURVED["smooth"].replace("Edges 8", "Edges 7"), "expected a keyword"),
         (CURVED["smooth"].replace("1 2 3\n", "1 9 3\n"), "Edges: row 1 names 9.*vertices 1 to 8"),

@@ -209,7 +209,7 @@ def test_dxf_is_a_domain(dxf):
         ),
         (lambda s: s.add_line((0, 0, 0), (1, 0, 1)), "not lie in a plane"),
         (lambda s: s.add_circle((0, 0), 1, dxfattribs={"extrusion": (1, 0, 0)}), "tilted plane"),
-        (lambda s: s.add_circle((0, 0), 0), "radius 0"),
+        (lambda s: s.add_circle((0, 0), 0), "positive radii, got 0"),
     ],
 )
 def test_dxf_that_cannot_be_meshed(dxf, draw, says):

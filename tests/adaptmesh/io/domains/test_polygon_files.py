@@ -50,7 +50,7 @@ def test_dirty_wkt_is_repaired(tmp_path):
     ("text", "error", "message"),
     [
         ("", DomainError, "holds no geometry"),
-        (f"{WITH_HOLE}\n\nhello", FormatError, "line 3: POLYGON or the like .*'hello'"),
+        (f"{WITH_HOLE}\n\nhello", FormatError, "line 3: expected POLYGON or the like, got 'hello'"),
         (f"{WITH_HOLE}\n{WITH_HOLE[:-1]}", FormatError, "line 2: the brackets of this POLYGON"),
         (f"{WITH_HOLE}\nPOLYGON ((0 0, 1 x, 0 0))", FormatError, "line 2: .*'x'"),
         ("POLYGON ((0 0, 1 0, 1 1))", FormatError, "line 1: .*closed"),
