@@ -122,8 +122,8 @@ def frozen_integers(array: Array, what: str) -> Ints:
     bad = np.argwhere(~((array >= limits.min) & (array <= limits.max) & (array == np.rint(array))))
     if len(bad):
         raise ValueError(
-            f"{what} {int(bad[0, 0])} is {array[bad[0, 0]].tolist()}: whole numbers of 32 bits are "
-            "wanted"
+            f"{what} {int(bad[0, 0])} is {array[bad[0, 0]].tolist()}: expected whole numbers of 32 "
+            "bits"
         )
     out = np.array(array, dtype=np.int32, order="C")
     out.flags.writeable = False
@@ -176,14 +176,14 @@ def check_is_mapping(labels: object, what: str) -> None:
 def expect_number(name: str, value: Any) -> None:
     """A `TypeError` for what is no real number."""
     if not isinstance(value, Real) or isinstance(value, bool):
-        raise TypeError(f"{name}={value!r}: a number is wanted")
+        raise TypeError(f"{name}={value!r}: expected a number")
 
 
 def expect_whole(name: str, value: Any, least: int) -> None:
     """Also a `ValueError` for what is not whole, or less than the least."""
     expect_number(name, value)
     if not value >= least or value != int(value):
-        raise ValueError(f"{name}={value!r}: a whole number from {least} on is wanted")
+        raise ValueError(f"{name}={value!r}: expected a whole number, at least {least}")
 
 
 def expect_function(name: str, value: Any) -> None:

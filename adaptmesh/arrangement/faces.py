@@ -17,6 +17,7 @@ import numpy as np
 from adaptmesh._core import InputError, triangulate
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.containing import containing_triangles
+from adaptmesh.geometry.products import cross
 from adaptmesh.topology import components, edge_keys, half_edges
 from adaptmesh.types import Bools, Floats, Int64s
 
@@ -72,7 +73,7 @@ class Faces:
     def _doubled_areas(self) -> Floats:
         p = self.points[self.triangles]
         u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-        return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+        return cross(u, v)
 
     def merge_across(self, edges: Bools) -> Int64s:
         """Number the faces that are left without some edges; return the number of each old face."""

@@ -143,7 +143,7 @@ def numbered(
     taken = {*given.values(), *(k for k in labels if isinstance(k, int))}
     for number in taken:
         if not isinstance(number, (int, np.integer)) or not -(2**31) <= number < 2**31:
-            raise DomainError(f"{what} {number!r}: a whole number of 32 bits is wanted")
+            raise DomainError(f"{what} {number!r}: expected a whole number of 32 bits")
     free = (number for number in itertools.count(1) if number not in taken)
     names: dict[str, int] = {}
     numbers = []
@@ -164,7 +164,7 @@ def _checked_label(label: object, what: str) -> Label:
     if isinstance(label, (int, np.integer)):
         return int(label)
     if not isinstance(label, str) or not label:
-        raise DomainError(f"the name {label!r}: a text or, for a bare {what}, a number is wanted")
+        raise DomainError(f"the name {label!r}: expected a text or, for a bare {what}, a number")
     return str(label)
 
 

@@ -13,6 +13,7 @@ from adaptmesh._core import orient2d
 from adaptmesh.checks import LARGEST, checked_points, read_only
 from adaptmesh.curves import Curve
 from adaptmesh.errors import DomainError
+from adaptmesh.geometry.products import cross
 from adaptmesh.types import Bools, Floats, Index, Ints
 from adaptmesh.value import Value
 
@@ -206,11 +207,6 @@ def _areas_beside(line: Path, u: Floats) -> Floats:
     return 0.5 * np.bincount(chord, swept + jumps, minlength=len(u)).astype(np.float64)
 
 
-def cross(p: Floats, q: Floats) -> Floats:
-    """Areas of the parallelograms of vectors (k, 2)."""
-    return p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
-
-
 class Skeleton(NamedTuple):
     """The polygon inscribed in curves, as a domain takes it."""
 
@@ -237,11 +233,11 @@ def skeleton_of(
         join_tolerance = max(JOINED * extent, JOINED_PLACES * last_place)
     if not 0 <= join_tolerance < extent:
         raise DomainError(
-            f"join_tolerance={join_tolerance}: a length from 0 to the extent, {extent:g}, is wanted"
+            f"join_tolerance={join_tolerance}: expected a length from 0 to the extent, {extent:g}"
         )
     _check_extents(curves, some_points, join_tolerance)
     if not 0 <= corner_angle <= 180:
-        raise DomainError(f"corner_angle={corner_angle}: degrees from 0 to 180 are wanted")
+        raise DomainError(f"corner_angle={corner_angle}: expected degrees from 0 to 180")
     joined = join(curves, tags, min(corner_angle, MESH_TURN), join_tolerance, isolated)
     isolated = isolated[~are_near(isolated, joined.corners, join_tolerance)]
     vertices = np.concatenate([joined.corners, isolated])

@@ -8,6 +8,7 @@ import numpy as np
 
 from adaptmesh.checks import checked_number
 from adaptmesh.errors import DomainError
+from adaptmesh.geometry.products import cross
 from adaptmesh.types import Bools, Floats, Ints
 
 from .data import DomainData
@@ -20,7 +21,7 @@ def area_of(domain: DomainData) -> float:
     """Area without the holes; that between the true curves if there are any."""
     p = domain.points[domain.triangles]
     u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-    straight = 0.5 * np.sum(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    straight = 0.5 * np.sum(cross(u, v))
     return float(straight + _area_beyond_chords(domain))
 
 
@@ -45,7 +46,7 @@ def segments_within(domain: DomainData, tolerance: float, names: Iterable[str] |
     """As `Domain.outline`."""
     least = SMALLEST_TOLERANCE * float(np.ptp(domain.points, axis=0).max())
     if not checked_number(tolerance, "tolerance") >= least:
-        raise DomainError(f"tolerance={tolerance}: at least {least:g} is wanted")
+        raise DomainError(f"tolerance={tolerance}: expected at least {least:g}")
     if isinstance(names, str):
         raise TypeError(f"names={names!r}: give a list of names, [{names!r}]")
     curved = domain.curved

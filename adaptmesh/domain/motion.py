@@ -57,5 +57,5 @@ def _vector(value: ArrayLike, what: str) -> Floats:
     except (TypeError, ValueError):
         out = np.full(2, np.nan)
     if out.shape != (2,) or not np.isfinite(out).all():
-        raise DomainError(f"{what}={value!r}: two finite numbers are wanted")
+        raise DomainError(f"{what}={value!r}: expected two finite numbers")
     return out

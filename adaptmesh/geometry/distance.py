@@ -8,6 +8,8 @@ import numpy as np
 
 from adaptmesh.types import Floats, Int64s
 
+from .products import cross
+
 
 def first_of_equal(points: Floats) -> Int64s:
     """For each point the number of the first that is equal to it."""
@@ -59,8 +61,8 @@ def meeting(first: Floats, second: Floats) -> Floats:
     """Where segments (n, 2, 2) that cross each other meet, rounded; never outside of their ends."""
     (a, b), (c, d) = first.transpose(1, 0, 2), second.transpose(1, 0, 2)
     u, w, r = b - a, d - c, c - a
-    across = u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]
-    along = r[:, 0] * w[:, 1] - r[:, 1] * w[:, 0]
+    across = cross(u, w)
+    along = cross(r, w)
     flat = across == 0  # it crosses by exact signs, but not in doubles
     t = np.clip(np.where(flat, 0.5, along / np.where(flat, 1.0, across)), 0.0, 1.0)
     return np.where((t < 0.5)[:, None], a + t[:, None] * u, b - (1.0 - t)[:, None] * u)

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from adaptmesh.geometry.products import cross
 from adaptmesh.types import Floats, Ints
 
 LARGEST = 4e-6
@@ -93,5 +94,4 @@ def _left_of(p: Floats, a: Floats, b: Floats) -> Floats:
     """How far points (n, 2) are to the left of the lines from a to b."""
     d, w = b - a, p - a
     length = np.hypot(*d.T)
-    cross = d[:, 0] * w[:, 1] - d[:, 1] * w[:, 0]
-    return np.divide(cross, length, out=np.full(len(p), np.inf), where=length > 0)
+    return np.divide(cross(d, w), length, out=np.full(len(p), np.inf), where=length > 0)

@@ -15,6 +15,7 @@ import numpy as np
 
 from adaptmesh.curves import Curve, Line, Spline
 from adaptmesh.errors import DomainError
+from adaptmesh.geometry.products import cross
 from adaptmesh.types import Floats
 
 SAGITTA = 2
@@ -47,7 +48,7 @@ def smooth_curves(
         several edges on one line do not make it straight.
     """
     if not 0 <= corner_angle < 180:
-        raise DomainError(f"corner_angle={corner_angle}: degrees from 0 to below 180 are wanted")
+        raise DomainError(f"corner_angle={corner_angle}: expected degrees from 0 to below 180")
     edges = {frozenset(pair) for pair in itertools.pairwise(chain)}
     straight = np.array([frozenset(pair) not in edges for pair in itertools.pairwise(corners)])
     p = points[list(corners)]
@@ -88,5 +89,5 @@ def _turns(p: Floats) -> Floats:
     """By how many degrees a closed polyline (k + 1, 2) turns at each of its first k points."""
     after = np.diff(p, axis=0)
     before = np.roll(after, 1, axis=0)
-    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    return np.degrees(np.abs(np.arctan2(cross, (before * after).sum(axis=1))))
+    turn = np.arctan2(cross(before, after), (before * after).sum(axis=1))
+    return np.degrees(np.abs(turn))

@@ -11,6 +11,7 @@ from adaptmesh._core import InputError, triangulate
 from adaptmesh.domain.inputs import rows_of_each
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.containing import containing_triangles
+from adaptmesh.geometry.products import cross
 from adaptmesh.topology import edge_keys, half_edges, parts_between
 from adaptmesh.types import Floats, Ints
 
@@ -54,7 +55,7 @@ def hole_points(mesh: MeshData, points: Floats, segments: Ints) -> Floats:
     # The largest triangle of each part stands for it.
     p = points[filled]
     u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-    by_area = np.argsort(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])[::-1]
+    by_area = np.argsort(cross(u, v))[::-1]
     _, first = np.unique(part[by_area], return_index=True)
     centres = p[by_area[first]].mean(axis=1)
     return centres[containing_triangles(mesh.points, mesh.triangles, centres) < 0]

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from adaptmesh.geometry.products import cross
 from adaptmesh.topology import components
 from adaptmesh.types import Floats, Index
 
@@ -42,8 +43,8 @@ def corner_angles(s: Subject) -> Floats:
         u, v = p[:, (i + 1) % 3] - p[:, i], p[:, (i + 2) % 3] - p[:, i]
         u /= np.abs(u).max(axis=1, keepdims=True)  # so that no product underflows
         v /= np.abs(v).max(axis=1, keepdims=True)
-        cross = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-        angles.append(np.arctan2(np.maximum(cross, 0.0), (u * v).sum(axis=1)))  # 0: by rounding
+        turned = np.maximum(cross(u, v), 0.0)  # 0: by rounding
+        angles.append(np.arctan2(turned, (u * v).sum(axis=1)))
     return np.concatenate(angles)
 
 

@@ -172,8 +172,14 @@ def test_what_is_no_mesh_is_named(plate):
     [
         ({"points": [(0, 0, 0, 0)]}, "points must be an (n, 2) array, not one of shape"),
         ({"triangles": [0, 1, 2]}, "triangles must be an (n, 3) array, not one of shape (3,)"),
-        ({"triangles": [(0, 1, 2), (0, 2.5, 3)]}, "triangle 1 is [0.0, 2.5, 3.0]: whole numbers"),
-        ({"triangles": [(0, 1, 2**40)]}, "triangle 0 is [0, 1, 1099511627776]: whole numbers"),
+        (
+            {"triangles": [(0, 1, 2), (0, 2.5, 3)]},
+            "triangle 1 is [0.0, 2.5, 3.0]: expected whole numbers",
+        ),
+        (
+            {"triangles": [(0, 1, 2**40)]},
+            "triangle 0 is [0, 1, 1099511627776]: expected whole numbers",
+        ),
         ({"regions": [1]}, "regions must be one number for each of 2 triangles"),
         ({"edges": [(0, 1)], "edge_tags": [1, 2]}, "edge_tags must be one number for each of 1"),
         ({"edges": [(0, 1)], "edge_tags": [np.nan]}, "edge tag 0 is nan"),

@@ -139,8 +139,8 @@ def test_rectangle():
         ({"names": ["inlet"]}, "names must be a mapping of names, not list"),
         ({"names": {"inlet": [1.5]}}, "name 'inlet' is given to segment 1.5"),
         ({"names": {"inlet": "3"}}, "name 'inlet' is given to segment '3'"),
-        ({"names": {"": [1]}}, "the name '': a text"),
-        ({"names": {None: [1]}}, "the name None: a text"),
+        ({"names": {"": [1]}}, "the name '': expected a text"),
+        ({"names": {None: [1]}}, "the name None: expected a text"),
         ({"regions": [(0.5, 0.5)]}, "regions must be a mapping of names, not list"),
     ],
 )

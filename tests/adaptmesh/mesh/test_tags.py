@@ -88,9 +88,12 @@ def test_tags_of_curves():
     ("options", "message"),
     [
         ({"names": {17: [0], "a": [0]}}, "segment 0 is named both 17 and 'a'"),
-        ({"tags": {"a": 1.5}}, r"tag 1\.5: a whole number"),
-        ({"tags": {"a": 2**31}}, "tag 2147483648: a whole number of 32 bits"),
-        ({"regions": {2**40: (0.5, 0.5)}}, "region 1099511627776: a whole number of 32 bits"),
+        ({"tags": {"a": 1.5}}, r"tag 1\.5: expected a whole number"),
+        ({"tags": {"a": 2**31}}, "tag 2147483648: expected a whole number of 32 bits"),
+        (
+            {"regions": {2**40: (0.5, 0.5)}},
+            "region 1099511627776: expected a whole number of 32 bits",
+        ),
         ({"names": {17: [7]}}, "name 17 is given to segment 7"),
     ],
 )

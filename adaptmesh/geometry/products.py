@@ -1,0 +1,10 @@
+"""Products of vectors of the plane."""
+
+from __future__ import annotations
+
+from adaptmesh.types import Floats
+
+
+def cross(u: Floats, v: Floats) -> Floats:
+    """Areas of the parallelograms of vectors (..., 2), positive where v is on the left of u."""
+    return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
