@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh.types import Array, Index
+from adaptmesh.types import Array, Floats, Index
 
 
 def offsets(counts: Index) -> NDArray[np.intp]:
@@ -32,3 +32,12 @@ def split(items: Array, counts: Index) -> list[Array]:
 def starts_of_pairs(owner: Index) -> NDArray[np.intp]:
     """The items, (k,), that the next item follows in the same row; owners are ascending."""
     return np.flatnonzero(owner[1:] == owner[:-1])
+
+
+def equal_parts(intervals: Floats, parts: Index) -> Floats:
+    """Intervals (k, 2) divided into equal parts, so many each; ends that meet are one number."""
+    k, n = ranges(np.zeros(len(parts), np.intp), parts), np.repeat(parts, parts)
+    low, high = (np.repeat(intervals[:, i], parts) for i in (0, 1))
+    begin = low + k / n * (high - low)
+    end = np.where(k + 1 == n, high, low + (k + 1) / n * (high - low))
+    return np.stack([begin, end], axis=1)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from adaptmesh import ragged
 from adaptmesh.types import Bools, Floats, Index, Ints
 
 from .data import DomainData
@@ -95,34 +96,25 @@ def _divided(domain: DomainData, segment: Index) -> tuple[Index, Floats, Floats]
 
     They are divided until they, and their chords, are as near to the curves as they must be.
     """
-    curved, runs = domain.curved, domain.curved.paths
+    curved, paths = domain.curved, domain.curved.paths
     extent = float(np.ptp(domain.points, axis=0).max())
     u = curved.segment_parameters[segment]
     for again in range(MOST_ROUNDS, -1, -1):
-        run, n = curved.segment_paths[segment].astype(np.intp), len(segment)
+        path, n = curved.segment_paths[segment].astype(np.intp), len(segment)
         part = u.mean(axis=1).astype(np.intp)
-        p = np.stack([points_on(runs, run, u[:, i]) for i in (0, 1)], axis=1)
-        d = np.stack([derivatives_of_parts(runs, run, part, u[:, i]) for i in (0, 1)], axis=1)
+        p = np.stack([points_on(paths, path, u[:, i]) for i in (0, 1)], axis=1)
+        d = np.stack([derivatives_of_parts(paths, path, part, u[:, i]) for i in (0, 1)], axis=1)
         d *= np.diff(u, axis=1)[:, :, None]
         at = u[:, :1] + LOOKS * np.diff(u, axis=1)
-        looks = points_on(runs, np.repeat(run, len(LOOKS)), at.ravel()).reshape(n, -1, 2)
+        looks = points_on(paths, np.repeat(path, len(LOOKS)), at.ravel()).reshape(n, -1, 2)
         off = np.linalg.norm(looks - hermite(p, d, LOOKS), axis=2).max(axis=1)
         height = _off_chord(looks, p).max(axis=1)
         want = np.maximum((off / (CUBIC * extent)) ** 0.25, (height / (CHORD * extent)) ** 0.5)
         parts = np.ceil(want).clip(1, MOST_PARTS).astype(np.intp)
         if (parts == 1).all() or not again:
             break
-        segment, u = np.repeat(segment, parts), _equal_parts(u, parts)
+        segment, u = np.repeat(segment, parts), ragged.equal_parts(u, parts)
     return segment, p, d
-
-
-def _equal_parts(u: Floats, parts: Index) -> Floats:
-    """Ranges (k, 2) divided into so many equal parts each; ends that meet are the same number."""
-    k = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
-    n, low, high = np.repeat(parts, parts), np.repeat(u[:, 0], parts), np.repeat(u[:, 1], parts)
-    begin = low + k / n * (high - low)
-    end = np.where(k + 1 == n, high, low + (k + 1) / n * (high - low))
-    return np.stack([begin, end], axis=1)
 
 
 def hermite(ends: Floats, derivatives: Floats, t: Floats) -> Floats:

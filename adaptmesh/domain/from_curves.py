@@ -13,9 +13,9 @@ from adaptmesh.errors import DomainError
 from .data import DomainData
 from .from_segments import enclosed
 from .inputs import ByLabel, Inside, checked_names, labelled
-from .inscribed_polygon import skeleton_of
 from .named_sides import sides_of_domain, tags_of_sides
 from .naming import Chosen, chosen_tags, split_names
+from .skeleton import skeleton_of
 
 
 def domain_of_curves(

@@ -54,7 +54,7 @@ def join(
     ----------
     curves : sequence of Curve
     tags : (k,) array of int
-        The number of the name of each; a run has one name.
+        The number of the name of each; a path has one name.
     corner_angle : float
         Where a line turns by more than this, in degrees, is a corner.
     tolerance : float
@@ -89,10 +89,21 @@ def join(
         for v, found in enumerate(at)
     ]
     walks = _walks(node, at, is_corner, len(pieces))
+    return _joined(curves, pieces, ends, node, is_corner, walks)
 
+
+def _joined(
+    curves: Sequence[Curve],
+    pieces: list[Piece],
+    ends: Floats,
+    node: list[int],
+    is_corner: list[bool],
+    walks: list[list[int]],
+) -> Joined:
+    """Corners, and what each walk from corner to corner is: a straight line, or a path."""
     corner_number = np.cumsum(is_corner) - 1
-    first = np.array([found[0] for found in at])[np.array(is_corner)]
-    corners = ends[first]
+    _, first = np.unique(node, return_index=True)
+    corners = ends[first[np.array(is_corner)]]
     lines, owners, paths = [], [], []
     for walk in walks:
         a, b = (

@@ -56,8 +56,8 @@ def segments_within(domain: DomainData, tolerance: float, names: Iterable[str] |
     straight = domain.points[domain.segments[asked & (curved.segment_paths < 0)]]
     if not curved.paths:
         return straight
-    run, u = curved.chords_within(tolerance)
-    mine = np.isin(run, curved.segment_paths[asked])
-    run, u = run[mine], u[mine]
-    ends = points_on(curved.paths, np.repeat(run, 2), u.ravel()).reshape(-1, 2, 2)
+    path, u = curved.chords_within(tolerance)
+    mine = np.isin(path, curved.segment_paths[asked])
+    path, u = path[mine], u[mine]
+    ends = points_on(curved.paths, np.repeat(path, 2), u.ravel()).reshape(-1, 2, 2)
     return np.concatenate([straight, ends])

@@ -14,15 +14,15 @@ from .data import DomainData
 from .inputs import ByLabel, checked_names, numbered
 from .joining import name_of_curve
 from .messages import segment_text
-from .naming import LOOKS, Chosen, Sides, chosen_tags, split_names, straight_sides
+from .naming import LOOKS, Chosen, SideSamples, chosen_tags, split_names, straight_sides
 
 
-def sides_of_domain(domain: DomainData) -> Sides:
+def sides_of_domain(domain: DomainData) -> SideSamples:
     """Its curves if it is made of these, else its segments."""
     return _sides_of_curves(domain) if domain.curved.curves else _sides_of_segments(domain)
 
 
-def _sides_of_segments(domain: DomainData) -> Sides:
+def _sides_of_segments(domain: DomainData) -> SideSamples:
     ends = domain.points[domain.segments]
     return straight_sides(ends, _outward(domain), lambda i: segment_text(domain, i))
 
@@ -45,7 +45,7 @@ def _outward(domain: DomainData) -> Floats:
     return sign[:, None] * to_right
 
 
-def _sides_of_curves(domain: DomainData) -> Sides:
+def _sides_of_curves(domain: DomainData) -> SideSamples:
     curved = domain.curved
     normals = _outward(domain)
     middles = domain.points[domain.segments].mean(axis=1)
@@ -63,7 +63,7 @@ def _sides_of_curves(domain: DomainData) -> Sides:
         # The chord nearest to each place says on which side of the curve the domain is.
         near = mine[((p[:, None] - middles[mine]) ** 2).sum(axis=2).argmin(axis=1)]
         outward.append(np.sign((normals[near] * to_right).sum(axis=1))[:, None] * to_right)
-    return Sides(
+    return SideSamples(
         np.array(ends),
         np.array(places),
         np.array(outward),
@@ -82,7 +82,7 @@ def tags_of_sides(domain: DomainData) -> Ints:
 
 
 def renamed_tags(
-    names: ByLabel[Chosen], sides: Sides, old: Ints, old_names: Mapping[str, int], what: str
+    names: ByLabel[Chosen], sides: SideSamples, old: Ints, old_names: Mapping[str, int], what: str
 ) -> tuple[Mapping[str, int], Ints]:
     """Names and tags of sides after some got new names, in place of those that they had.
 

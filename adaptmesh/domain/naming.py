@@ -36,8 +36,8 @@ SAME = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Sides:
-    """Sides, and what can be asked of them.
+class SideSamples:
+    """Sides by samples of them, and what can be asked of these.
 
     Attributes
     ----------
@@ -90,17 +90,17 @@ class Sides:
         return every
 
 
-def straight_sides(ends: Floats, outward: Floats, describe: Callable[[int], str]) -> Sides:
+def straight_sides(ends: Floats, outward: Floats, describe: Callable[[int], str]) -> SideSamples:
     """Sides that are straight, from their ends (k, 2, 2) and normals (k, 2)."""
     places = ends[:, None, 0] + LOOKS[:, None] * (ends[:, None, 1] - ends[:, None, 0])
-    return Sides(ends, places, np.repeat(outward[:, None], len(LOOKS), axis=1), describe)
+    return SideSamples(ends, places, np.repeat(outward[:, None], len(LOOKS), axis=1), describe)
 
 
 class Selector(Value, ABC):
     """A way to choose sides."""
 
     @abstractmethod
-    def choose(self, sides: Sides, name: Label) -> Bools:
+    def choose(self, sides: SideSamples, name: Label) -> Bools:
         """Which sides get the name, (k,)."""
 
 
@@ -110,7 +110,7 @@ class Where(Selector):
 
     condition: Callable[[Floats], Any]
 
-    def choose(self, sides: Sides, name: Label) -> Bools:
+    def choose(self, sides: SideSamples, name: Label) -> Bools:
         """See `Selector`."""
         flat = np.ascontiguousarray(sides.places.reshape(-1, 2))
         holds = np.asarray(self.condition(flat.copy()))
@@ -129,7 +129,7 @@ class Nearest(Selector):
 
     points: Floats
 
-    def choose(self, sides: Sides, name: Label) -> Bools:
+    def choose(self, sides: SideSamples, name: Label) -> Bools:
         """See `Selector`."""
         import shapely
 
@@ -156,7 +156,7 @@ class Facing(Selector):
     direction: tuple[float, float]
     within: float
 
-    def choose(self, sides: Sides, name: Label) -> Bools:
+    def choose(self, sides: SideSamples, name: Label) -> Bools:
         """See `Selector`."""
         across = sides.outward @ np.array([-self.direction[1], self.direction[0]])
         angle = np.degrees(np.arctan2(np.abs(across), sides.outward @ np.array(self.direction)))
@@ -234,7 +234,7 @@ def split_names(
 
 
 def chosen_tags(
-    tags: Ints, selectors: Mapping[Label, Selector], names: Mapping[str, int], sides: Sides
+    tags: Ints, selectors: Mapping[Label, Selector], names: Mapping[str, int], sides: SideSamples
 ) -> Ints:
     """Tags of sides (k,), after names were given to those that selectors choose.
 

@@ -125,7 +125,7 @@ def _inscribed(domain: Domain, field: ControlSpace) -> _Polygon:
     if not on_run.any():
         return _Polygon(domain.points, domain.triangles, border)
     segment = segment[on_run]
-    run, u = curved.segment_paths[segment], curved.segment_parameters[segment]
+    path, u = curved.segment_paths[segment], curved.segment_parameters[segment]
     turned = ~inside_is_left_of(domain, segment)[:, None]
     u = np.where(turned, u[:, ::-1], u)
     chord = np.where(turned, domain.segments[segment][:, ::-1], domain.segments[segment])
@@ -135,16 +135,16 @@ def _inscribed(domain: Domain, field: ControlSpace) -> _Polygon:
     while len(chord):
         middle = len(points) + np.arange(len(chord), dtype=np.int32)
         u_middle = u.mean(axis=1)
-        new = points_on(curved.paths, run, u_middle)
+        new = points_on(curved.paths, path, u_middle)
         points, tensors = np.concatenate([points, new]), np.concatenate([tensors, field(new)])
         halved = _is_coarse(points, tensors, chord, middle) & (len(points) < MAX_POINTS)
         edges.append(chord[~halved])
-        run, chord, middle = run[halved], chord[halved], middle[halved]
+        path, chord, middle = path[halved], chord[halved], middle[halved]
         triangles.append(np.column_stack([chord[:, 0], middle, chord[:, 1]]))
         u, u_middle = u[halved], u_middle[halved]
         u = np.column_stack([u[:, 0], u_middle, u_middle, u[:, 1]]).reshape(-1, 2)
         chord = np.column_stack([chord[:, 0], middle, middle, chord[:, 1]]).reshape(-1, 2)
-        run = np.repeat(run, 2)
+        path = np.repeat(path, 2)
     return _Polygon(points, np.concatenate(triangles), np.concatenate(edges))
 
 

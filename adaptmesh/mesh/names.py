@@ -9,7 +9,7 @@ import numpy as np
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import ByLabel
 from adaptmesh.domain.named_sides import renamed_tags, tags_of_sides
-from adaptmesh.domain.naming import Chosen, Sides, split_names, straight_sides
+from adaptmesh.domain.naming import Chosen, SideSamples, split_names, straight_sides
 from adaptmesh.errors import DomainError
 from adaptmesh.topology import edge_keys, triangles_beside
 from adaptmesh.types import Ints
@@ -29,7 +29,7 @@ def mesh_with_names(mesh: M, names: ByLabel[Chosen]) -> M:
     return replace(mesh, edges=edges, edge_tags=tags, names=numbers)
 
 
-def _sides_of_edges(mesh: MeshData, edges: Ints) -> Sides:
+def _sides_of_edges(mesh: MeshData, edges: Ints) -> SideSamples:
     left, right = triangles_beside(mesh.triangles, edges, len(mesh.points))
     ends = mesh.points[edges]
     d = ends[:, 1] - ends[:, 0]

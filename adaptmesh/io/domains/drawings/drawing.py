@@ -14,8 +14,8 @@ from adaptmesh.curves import Curve, EllipticArc, Polyline
 from adaptmesh.domain.coincident_curves import curves_once
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import Holes, refuse_holes
-from adaptmesh.domain.inscribed_polygon import extent_of
 from adaptmesh.domain.outline import Outline
+from adaptmesh.domain.skeleton import extent_of
 from adaptmesh.domain.surfaces import joined_lines, seeds_of
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.distance import first_of_equal

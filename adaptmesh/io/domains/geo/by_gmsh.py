@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from adaptmesh.curves import Arc, BSpline, Curve, Line
-from adaptmesh.domain.inscribed_polygon import extent_of
+from adaptmesh.domain.skeleton import extent_of
 from adaptmesh.domain.surfaces import joined_lines
 from adaptmesh.errors import FormatError, FormatWarning
 from adaptmesh.io.domains.drawings.drawing import JOINED, affine_arc
