@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import typer
 
-from .output import Reporter
+from adaptmesh.domain.domain import Domain
+from adaptmesh.mesh.mesh import Mesh
 
-if TYPE_CHECKING:
-    from adaptmesh.domain.domain import Domain
-    from adaptmesh.mesh.mesh import Mesh
+from .output import Reporter
 
 
 def check_outputs(mesh: Path | None = None, picture: Path | None = None) -> None:

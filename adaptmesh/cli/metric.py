@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import typer
 
+from adaptmesh.domain.domain import Domain
 from adaptmesh.errors import FormatError
-
-if TYPE_CHECKING:
-    from adaptmesh.domain.domain import Domain
-    from adaptmesh.mesh.mesh import Mesh
-    from metrics import ControlSpace
+from adaptmesh.mesh.mesh import Mesh
+from metrics import ControlSpace
 
 SOLUTION_SUFFIXES = (".sol", ".solb", ".mtr")
 RASTER_SUFFIXES = (".tif", ".tiff", ".asc", ".nc", ".grd")

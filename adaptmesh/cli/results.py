@@ -6,13 +6,12 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from adaptmesh.mesh.mesh import Mesh
+from metrics import ControlSpace
 
 from .output import Reporter
-
-if TYPE_CHECKING:
-    from adaptmesh.mesh.mesh import Mesh
-    from metrics import ControlSpace
 
 
 @contextmanager

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from adaptmesh.mesh.checks import check_measurable
 from adaptmesh.mesh.control_space import control_space_on
+from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.value import FrozenMapping, Value
 from metrics.measure.exact import edge_lengths, metric_areas
 from metrics.topology import mesh_edges
@@ -27,9 +28,6 @@ from .report import (
     ratio_to_unit,
     triangle_entries,
 )
-
-if TYPE_CHECKING:
-    from adaptmesh.mesh.mesh import Mesh
 
 __all__ = ["Explanation", "explain"]
 

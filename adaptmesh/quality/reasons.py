@@ -9,19 +9,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 import metrics
+from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.text import place_text
 from adaptmesh.types import Bools, Floats
 from metrics import ControlSpace
 from metrics.measure.exact import edge_lengths
 from metrics.topology import mesh_edges
-
-if TYPE_CHECKING:
-    from adaptmesh.mesh.mesh import Mesh
 
 __all__ = ["Cause", "Reason", "Reasons"]
 

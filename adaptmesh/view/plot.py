@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from adaptmesh.domain.domain import Domain
 from adaptmesh.mesh.checks import check_measurable
 from adaptmesh.mesh.control_space import control_space_on
+from adaptmesh.mesh.mesh import Mesh
 from metrics import ControlSpace
 
 from . import layers
@@ -35,8 +36,6 @@ from .plotter import check_path, make_plotter, silence_vtk, write_picture
 
 if TYPE_CHECKING:
     import pyvista as pv
-
-    from adaptmesh.mesh.mesh import Mesh
 
 KINDS = ("mesh", "region", "quality", "length", "size")
 ELLIPSES = 150  # drawn when the number is not given

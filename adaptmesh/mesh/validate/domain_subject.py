@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.projection import Projection, project, shape_of, tolerance_of
 from adaptmesh.domain.side import Sides
 from adaptmesh.mesh.boundary_polylines import vertices_at
@@ -15,9 +15,6 @@ from adaptmesh.mesh.polylines import Matching, followed, matched
 from adaptmesh.types import Bools, Index, Int64s
 
 from .subject import Subject
-
-if TYPE_CHECKING:
-    from adaptmesh.domain.domain import Domain
 
 
 @dataclass(frozen=True)

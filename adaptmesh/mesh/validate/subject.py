@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh._core import orient2d, sweep_border
+from adaptmesh.mesh.data import MeshData
 from adaptmesh.topology import HalfEdges
 from adaptmesh.types import Bools, Floats, Index, Ints
-
-if TYPE_CHECKING:
-    from adaptmesh.mesh.data import MeshData
 
 SHOWN = 5  # offenders named for each check
 

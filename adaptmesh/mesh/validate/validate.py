@@ -15,19 +15,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
+from adaptmesh.domain.domain import Domain
 from adaptmesh.errors import AdaptmeshError
+from adaptmesh.mesh.data import MeshData
 
 from . import covering, fidelity, inside, local, periodicity
 from .domain_subject import DomainSubject
 from .subject import Finding, Subject
-
-if TYPE_CHECKING:
-    from adaptmesh.domain.domain import Domain
-    from adaptmesh.mesh.data import MeshData
 
 __all__ = ["Check", "InvalidMeshError", "Validity", "validate"]
 
