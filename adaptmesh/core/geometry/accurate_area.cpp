@@ -19,13 +19,13 @@ double difference_of_products(Two x, Two y) {
 double twice_area_after_cancellation(Point a, Point b, Point c, double rounded) {
     const double largest = largest_difference(a, b, c);
     if (on_grid<26>(largest, {a.x, a.y, b.x, b.y, c.x, c.y})) return rounded;
-    if (!(is_ordinary(a) & is_ordinary(b) & is_ordinary(c))) return twice_area_exact(a, b, c);
+    if (!all(is_ordinary(a), is_ordinary(b), is_ordinary(c))) return twice_area_exact(a, b, c);
 
     const TwoVector v(a, c), w(b, c);
     const double magnitude = cross_magnitude(v, w);
     if (magnitude == 0) return 0;  // of ordinary numbers: both products have a factor zero
     const double value =
-        v.is_double() & w.is_double()
+        all(v.is_double(), w.is_double())
             ? difference_of_products(two_product(v.x.hi, w.y.hi), two_product(v.y.hi, w.x.hi))
             : [&] {
                   const Two area = cross(v, w);
