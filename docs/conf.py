@@ -5,7 +5,6 @@ import sys
 from pathlib import Path
 
 import pyvista
-from sphinx_gallery.sorting import FileNameSortKey
 
 import adaptmesh
 
@@ -51,7 +50,7 @@ sphinx_gallery_conf = {
     "filename_pattern": r"/\d\d_",
     "ignore_pattern": r"/data/",
     "image_scrapers": ("pyvista", "matplotlib"),
-    "within_subsection_order": FileNameSortKey,
+    "within_subsection_order": "FileNameSortKey",
     "abort_on_example_error": True,
     "download_all_examples": False,
     "show_memory": False,
