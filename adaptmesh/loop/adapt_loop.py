@@ -119,7 +119,7 @@ def adapt_loop(
     budget : Budget, optional
         Bounds on vertices and seconds. The loop ends when they are reached, and says so.
     transfer : {"interpolation", "conservative"}, optional
-        How fields are carried to the next mesh, see `adaptmesh.transfer`.
+        How fields are transferred to the next mesh, see `adaptmesh.transfer`.
     save : path, optional
         A folder, to which every iteration is written when it is complete; see `History.save`.
     resume : History or path, optional

@@ -96,7 +96,7 @@ def transient_loop(
     h_min, h_max, max_anisotropy, gradation, recovery, combine : optional
         As for `adapt_loop`.
     transfer : {"conservative", "interpolation"}, optional
-        How fields are carried from interval to interval.
+        How fields are transferred from interval to interval.
     keep_bounds : bool, optional
         As for `adaptmesh.transfer`.
     callback : callable, optional

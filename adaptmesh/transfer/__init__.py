@@ -1,1 +1,1 @@
-"""Fields carried from one mesh to another."""
+"""Transfer of fields from one mesh to another."""

@@ -1,6 +1,6 @@
-"""Two meshes laid over each other, and fields carried so that their integrals stay.
+"""The supermesh of two meshes, and the transfer of fields that conserves their integrals.
 
-The pieces that the triangles of both cut each other into are the supermesh. On a piece, the old
+Its triangles are the pieces that the triangles of both cut each other into. On a piece, the old
 field and the new basis functions are polynomials, so their products are integrated exactly.
 """
 
@@ -35,7 +35,7 @@ COVERED_TWICE = 1e-6
 
 
 class Overlay(Value):
-    """Which triangles of two meshes overlap, and by how much; carries fields conservatively.
+    """Which triangles of two meshes overlap, and by how much; transfers fields conservatively.
 
     Parameters
     ----------

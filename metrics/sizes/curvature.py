@@ -169,7 +169,7 @@ def sample(
     return points
 
 
-def _curvatures(curve: Geometry, least_cosine: float) -> Floats:
+def _curvatures(curve: Geometry, min_cosine: float) -> Floats:
     """Curvatures (v,) at the vertices of a curve; NaN at ends, branches and corners.
 
     With the neighbours a and b of a vertex v, 1/R = 2 |(v - a) x (b - v)| / (|va| |vb| |ab|).
@@ -181,7 +181,7 @@ def _curvatures(curve: Geometry, least_cosine: float) -> Floats:
     cross = u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]
     lengths = np.hypot(*u.T) * np.hypot(*w.T)
     chord = np.hypot(*(u + w).T)
-    is_corner = (u * w).sum(axis=1) < least_cosine * lengths
+    is_corner = (u * w).sum(axis=1) < min_cosine * lengths
     out = np.full(len(vertices), np.nan)
     safe = np.where(is_corner, 1, lengths * chord)
     out[smooth] = np.where(is_corner, np.nan, 2 * np.abs(cross) / safe)

@@ -15,23 +15,12 @@ from metrics.control import ControlSpace
 from metrics.errors import MetricError
 from metrics.types import Floats
 
+from .raster_input import as_sizes, read_data_array, read_file, refuse_fill_values
+
 __all__ = ["Raster"]
 
-_X_NAMES = ("x", "lon", "longitude", "easting")
-_Y_NAMES = ("y", "lat", "latitude", "northing")
-# Attributes in which arrays from files say what marks cells without a value.
-_MARKERS = ("_FillValue", "missing_value", "nodata")
-# Formats of GDAL that hold their values themselves. Others, such as VRT, name files and servers.
-_DRIVERS = (
-    "GTiff", "AAIGrid", "GSAG", "GSBG", "GS7BG", "netCDF", "XYZ", "USGSDEM", "DTED", "SRTMHGT",
-    "BT", "GTX", "PNG", "JP2OpenJPEG", "EHdr", "ENVI",
-)  # fmt: skip
-_UNPACKED = 2**28  # bytes that any raster may take
-_UNPACKED_PER_BYTE = 100
 # A point this far beyond the border, relative to the size of the raster, is on it by rounding.
 _BORDER = 1e-9
-# Sizes larger than so many extents of the raster are fill values: 1e20, 9.97e36, 1e38, 1.8e308.
-_MOST_EXTENTS = 1000.0
 
 
 class Raster(ControlSpace):
@@ -109,9 +98,9 @@ class Raster(ControlSpace):
         if hasattr(values, "dims") and hasattr(values, "coords"):
             if bounds is not None or x is not None or y is not None:
                 raise MetricError("a DataArray has coordinates: give neither bounds nor x and y")
-            values, x, y, markers = _of_data_array(values)
+            values, x, y, markers = read_data_array(values)
             no_data = markers if no_data is None else no_data
-        given = sizes = _as_sizes(values, no_data)
+        given = sizes = as_sizes(values, no_data)
         columns, rows = _centres(sizes, bounds, x, y, origin)
         if columns[0] > columns[-1]:
             columns, sizes = columns[::-1], sizes[:, ::-1]
@@ -121,7 +110,7 @@ class Raster(ControlSpace):
         self.x, self.y = np.ascontiguousarray(columns), np.ascontiguousarray(rows)
         self._x_edges = _edges(self.x, None if bounds is None else bounds[::2])
         self._y_edges = _edges(self.y, None if bounds is None else bounds[1::2])
-        _refuse_fill_values(given, max(np.ptp(self._x_edges), np.ptp(self._y_edges)))
+        refuse_fill_values(given, max(np.ptp(self._x_edges), np.ptp(self._y_edges)))
         self.sizes = _fill(np.ascontiguousarray(sizes), self.x, self.y, fill)
 
     @classmethod
@@ -144,23 +133,7 @@ class Raster(ControlSpace):
             on servers; and no raster is unpacked to more than 100 times its file and 256 MiB.
         """
         path = Path(path)
-        _refuse_indirect(path)
-        try:
-            import rasterio
-        except ImportError as error:
-            raise MetricError(
-                f"{path} cannot be read without rasterio: python -m pip install rasterio"
-            ) from error
-        try:
-            with rasterio.open(path) as file:
-                if file.driver not in _DRIVERS:
-                    raise MetricError(
-                        f"{path}: {file.driver}: expected one of {', '.join(_DRIVERS)}"
-                    )
-                _refuse_bomb(path, file.width * file.height * np.dtype(file.dtypes[0]).itemsize)
-                values, affine, marker = file.read(band, masked=True), file.transform, file.nodata
-        except (rasterio.errors.RasterioError, IndexError) as error:
-            raise MetricError(f"{path} cannot be read: {error}") from error
+        values, affine, marker = read_file(path, band)
         if affine.b != 0 or affine.d != 0:
             raise MetricError(f"{path} is rotated or sheared: warp it to be north-up")
         rows, columns = values.shape
@@ -224,96 +197,6 @@ class Raster(ControlSpace):
         rows, columns = self.sizes.shape
         (x0, x1), (y0, y1) = self._x_edges[[0, -1]].tolist(), self._y_edges[[0, -1]].tolist()
         return f"<Raster: {rows} x {columns} on [{x0:g}, {x1:g}] x [{y0:g}, {y1:g}]>"
-
-
-def _refuse_indirect(path: Path) -> None:
-    """Raise MetricError for what is no file, such as a URL, and for lists of other files."""
-    if not path.is_file():
-        raise MetricError(f"{path} cannot be read: there is no such file")
-    with path.open("rb") as file:
-        start = file.read(256).lstrip(b"\xef\xbb\xbf \t\r\n")[:1]
-    if start in (b"<", b"{"):
-        raise MetricError(f"{path} cannot be read: it is text that names other files or servers")
-
-
-def _refuse_bomb(path: Path, n_bytes: int) -> None:
-    """Raise MetricError if a raster would take much more memory than its file has bytes."""
-    bound = max(_UNPACKED, _UNPACKED_PER_BYTE * path.stat().st_size)
-    if n_bytes > bound:
-        raise MetricError(
-            f"{path}: expected at most {bound:,} bytes of values for a file of its size, got a "
-            f"raster of {n_bytes:,}; write it without compression if it is meant so"
-        )
-
-
-def _of_data_array(data: Any) -> tuple[Any, Any, Any, list[float]]:
-    """Values with y along the rows, coordinates, and the no-data markers of an xarray.DataArray."""
-    dims = [str(dim) for dim in data.dims]
-    x_dims = [dim for dim in dims if dim.lower() in _X_NAMES]
-    y_dims = [dim for dim in dims if dim.lower() in _Y_NAMES]
-    if len(dims) != 2 or len(x_dims) != 1 or len(y_dims) != 1:
-        raise MetricError(
-            f"the DataArray has the dimensions {tuple(dims)}: expected two, one of "
-            f"{', '.join(_X_NAMES)} and one of {', '.join(_Y_NAMES)}; select or rename them"
-        )
-    values = np.asarray(data.values)
-    if dims[0] == x_dims[0]:
-        values = values.T
-    attributes = getattr(data, "attrs", {})
-    markers = [m for name in _MARKERS for m in _markers(attributes.get(name))]
-    for dim in dims:
-        if dim not in data.coords:
-            raise MetricError(f"the DataArray has no coordinates along {dim!r}")
-    x, y = (np.asarray(data.coords[dim[0]].values) for dim in (x_dims, y_dims))
-    return values, x, y, markers
-
-
-def _as_sizes(values: Any, no_data: float | Sequence[float] | None) -> Floats:
-    """Sizes (rows, columns), NaN where there is none."""
-    raw = as_numbers(np.ma.getdata(values), "the raster")
-    sizes = raw.astype(np.float64)
-    if sizes.ndim != 2 or sizes.size == 0:
-        raise MetricError(f"the raster must have the shape (rows, columns), not {sizes.shape}")
-    for mark in _markers(no_data):
-        with np.errstate(over="ignore"):  # as the array holds it: -3.4e38 is another in float32
-            is_float = raw.dtype.kind == "f"
-            marker = raw.dtype.type(mark) if is_float else np.float64(mark)
-        sizes[raw == marker] = np.nan
-    sizes[np.ma.getmaskarray(values)] = np.nan
-    wrong = ~(np.isnan(sizes) | ((sizes > 0) & np.isfinite(sizes)))
-    if wrong.any():
-        row, column = (int(i) for i in np.unravel_index(wrong.argmax(), sizes.shape))
-        raise MetricError(
-            f"the raster at row {row}, column {column} is not a size: {float(sizes[row, column])}; "
-            "a size is positive and finite, no_data=... names what marks cells without one"
-        )
-    if np.isnan(sizes).all():
-        raise MetricError("no cell of the raster has data")
-    return sizes
-
-
-def _markers(no_data: float | Sequence[float] | None) -> list[float]:
-    if no_data is None:
-        return []
-    try:
-        return [float(mark) for mark in np.asarray(no_data, dtype=np.float64).ravel()]
-    except (TypeError, ValueError):
-        raise MetricError(
-            f"no_data: expected a number or several numbers, got {no_data!r}"
-        ) from None
-
-
-def _refuse_fill_values(sizes: Floats, side: float) -> None:
-    """Refuse numbers so large that they cannot be meant as sizes on a raster of this extent."""
-    large = sizes > _MOST_EXTENTS * side
-    if large.any():
-        row, column = (int(i) for i in np.unravel_index(large.argmax(), sizes.shape))
-        value = float(sizes[row, column])
-        raise MetricError(
-            f"the raster at row {row}, column {column} is {value!r} ({int(large.sum())} cells are "
-            f"like that), more than {_MOST_EXTENTS:g} times its longer side, {side:g}: a fill "
-            f"value and no size; name it, no_data={value!r}, or give the largest size that is meant"
-        )
 
 
 def _centres(
