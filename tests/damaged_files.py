@@ -1,7 +1,7 @@
 """Read damaged files of every format, as many as you like: python tests/damaged_files.py 1000 .vtu
 
-``7000:9000`` in place of the number is a range of seeds. Without suffixes, files of all. Prints
-what came of them, and all that may not be.
+``7000:9000`` in place of the number is a range of seeds. Without suffixes, files of all. Suffixes
+of meshio are read in forks of this process. Prints what came of them, and all that may not be.
 """
 
 import sys
@@ -11,16 +11,22 @@ import traceback
 from collections import Counter
 from pathlib import Path
 
+from reference import by_fork
 from reference.damage import Whole, contents, little_memory, read_every_way
-from reference.whole_files import WHOLE
+from reference.whole_files import WHOLE, of_mesh
 
 from adaptmesh.io.domains.geo import by_gmsh
+from adaptmesh.io.formats import FORMATS
+from adaptmesh.io.meshes import meshio_process
 
 
 def main(seeds, suffixes):
     by_gmsh.is_installed = lambda: False  # it takes a process for each
+    meshio_process._run = by_fork.run
     others = contents()
     for suffix in suffixes:
+        if suffix in FORMATS:
+            WHOLE.setdefault(suffix, {"by meshio": of_mesh(f"a{suffix}")})
         for way in WHOLE[suffix]:
             with tempfile.TemporaryDirectory() as folder:
                 run(seeds, Whole(suffix, way, Path(folder)), others, f"{suffix} {way}")

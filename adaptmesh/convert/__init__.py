@@ -10,11 +10,11 @@ matplotlib      `to_matplotlib`, `from_matplotlib`          ``tri.Triangulation`
 shapely         `to_shapely`; `adaptmesh.Domain.polygon`    a ``MultiPolygon`` for each region
 ==============  ==========================================  ======================================
 
-Points keep their order, so that values at the points need no map, except in FEniCSx, which numbers
-anew: `vertex_values_of_dolfinx` puts them back. Boundaries, internal lines and
-regions go by their names; a tag or region that has a number but no name is called by its number.
-What comes in is checked as a file is: clockwise triangles are turned over, and a `FormatError`
-names what is not a plane mesh of triangles. Nothing is loaded before it is asked for.
+Points keep their order, so that values at the points need no map, except in FEniCSx, which
+renumbers them: `vertex_values_of_dolfinx` puts values back. Boundaries, internal lines and regions
+go by their names; a tag or region that has a number but no name is called by its number. What comes
+in is checked as a file is: clockwise triangles are turned over, and a `FormatError` names what is
+not a plane mesh of triangles. Nothing is loaded before it is asked for.
 """
 
 from .dolfinx import from_dolfinx, to_dolfinx, vertex_values_of_dolfinx

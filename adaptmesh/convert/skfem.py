@@ -67,7 +67,7 @@ def from_skfem(
     m : skfem.MeshTri
         Of straight triangles.
     boundaries, subdomains : iterable of str, optional
-        The names to be taken, if not all; a facet or an element can bear one only.
+        The names to be taken, if not all; a facet or an element has one only.
 
     Returns
     -------

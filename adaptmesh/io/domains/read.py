@@ -31,7 +31,7 @@ def read_domain(path: str | os.PathLike[str], *, holes: Holes = None) -> Domain:
     ================== ==========================================================================
     .geojson .json     Each Polygon or MultiPolygon is a region, named by the property ``name`` of
                        its feature; polygons may share borders, which become interfaces, named
-                       ``"a|b"`` after the regions beside them; other borders of a region bear its
+                       ``"a|b"`` after the regions beside them; other borders of a region have its
                        name. Coordinates are taken as they are, in the plane: project longitudes
                        and latitudes first.
     .wkt               As GeoJSON, without names.

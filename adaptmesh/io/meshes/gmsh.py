@@ -346,7 +346,7 @@ def _json(ours: Mapping[str, object]) -> bytes:
 def _view(name: str, values: Array, order: Array, binary: bool) -> bytes:
     """A view, row by row in the order in which the file has the nodes or elements.
 
-    Each row bears its tag, so any order would do for Gmsh; but meshio does not look at the tags.
+    Each row has its tag, so Gmsh takes any order; but meshio does not look at the tags.
     """
     rows = _of_gmsh(name, spatial(values.reshape(len(values), -1)[order]))
     header = f'1\n"{name}"\n1\n0\n3\n0\n{rows.shape[1]}\n{len(rows)}\n'.encode()

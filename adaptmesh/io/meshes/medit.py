@@ -1,7 +1,7 @@
 """Medit meshes, `.mesh` (text) and `.meshb` (binary), also called Gamma Mesh Format.
 
-Triangles bear their region as reference, edges their tag, vertices 0. Medit knows no names, so
-they are put where its readers skip them:
+The reference of a triangle is its region, that of an edge its tag, that of a vertex 0. Medit knows
+no names, so they are put where its readers skip them:
 
     .mesh   comment lines        # adaptmesh counts {...}        see `adaptmesh.io.meshes.counts`
                                  # adaptmesh edge 3 "inlet"      (the name as a JSON string)

@@ -9,7 +9,7 @@ One grid holds the triangles (VTK type 5) and after them the constrained edges (
     CellData    regions       region of each triangle, 0 on edges
                 edge_tags     tag of each edge, 0 on triangles
                 q, ...        fields of the triangles, NaN (or 0 for integers) on edges
-    FieldData   edge_tags: inlet    tag of the edges that bear a name
+    FieldData   edge_tags: inlet    tag of the edges that have a name
                 regions: steel      number of a named region
                 columns: u          2 for a field that had 2 columns
                 shape: s            that of the values of a field with more than one axis

@@ -1,4 +1,4 @@
-"""What a drawing holds of interest: curves, and the names they bear."""
+"""The curves of a drawing, and their names."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ JOINED = 1e-6
 
 @dataclass
 class Drawing:
-    """Curves in the order of the file, and the numbers of those that bear each name.
+    """Curves in the order of the file, and the numbers of those of each name.
 
     Filled areas have a name, and the curves around them and around holes in them.
     """

@@ -1,7 +1,7 @@
 """DXF: drawings of CAD programs, read by ezdxf.
 
 Lines, arcs, circles, ellipses, polylines (with bulges) and splines of the model space become
-curves that bear the name of their layer; blocks are taken apart. Filled areas (HATCH, MPOLYGON,
+curves with the name of their layer; blocks are taken apart. Filled areas (HATCH, MPOLYGON,
 SOLID, TRACE) are regions named by their layer if nothing else is drawn; else they are passed over
 with a word, as they lie in the lines that are drawn. Annotation (text, dimensions, ...) and lone
 points are no outlines and are passed over; any other entity is refused, as is what does not lie in

@@ -32,7 +32,7 @@ _LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 
 
 def read_svg(path: Path) -> Drawing:
-    """The curves of an SVG file; each bears the label (as Inkscape gives it) or id of its shape."""
+    """The curves of an SVG file, named by the label (as Inkscape gives it) or id of their shape."""
     svg = _import_svgelements()
     drawing = Drawing(path)
     with refusing(f"{path} is damaged, or no SVG"), located(path):

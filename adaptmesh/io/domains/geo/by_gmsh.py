@@ -89,7 +89,7 @@ def _opened(path: Path, script: SafeScript) -> dict[str, Any]:
     except (ValueError, IndexError):
         raise FormatError(
             f"{path}: Gmsh ended without a result (exit code {done.returncode}): the script may "
-            f"take more than {SECONDS} s or {MEMORY >> 30} GB, or be more than Gmsh bears"
+            f"take more than {SECONDS} s or {MEMORY >> 30} GB, or be too large for Gmsh"
         ) from None
     if said["error"]:
         raise FormatError(f"{path}: {said['error'].replace(str(file), path.name)}")

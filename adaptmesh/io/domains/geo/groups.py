@@ -1,4 +1,4 @@
-"""Names of curves and surfaces by their physical groups; what is in several bears all names."""
+"""Names of curves and surfaces by their physical groups; those in several have all names."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def names_of_groups(
     several = sorted({"|".join(of) for of in groups_of.values() if len(of) > 1})
     if several:
         warnings.warn(
-            f"{path}: {what} that are in several physical groups bear the names of all: "
+            f"{path}: {what} that are in several physical groups have the names of all: "
             f"{', '.join(several)}",
             FormatWarning,
             stacklevel=4,

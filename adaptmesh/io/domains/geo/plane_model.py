@@ -73,7 +73,7 @@ class PlaneModel:
     ----------
     curves : sequence of Curve
     names : mapping of str to list of int
-        The curves that bear each name.
+        The curves of each name.
     tags, region_tags : mapping of str to int
         Numbers of names, of curves and of regions.
     faces : mapping of int to shapely polygon
