@@ -1,7 +1,9 @@
 """VTK XML unstructured grids, `.vtu`: what ParaView and pyvista open.
 
 What is in which array is told by `vtk_grid.py`. meshio (5.3.5) is not used: it writes no
-FieldData, and of a file with several pieces it reads only the cells of the last.
+FieldData, and of a file with several pieces it reads only the cells of the last. Nor is the reader
+of VTK (9.7): of 150 damaged copies of a file, 4 to 6 crashed the process or kept it busy for 8 to
+20 s and up to 0.7 GB, whether arrays were text, base64 or compressed.
 """
 
 from __future__ import annotations
