@@ -271,8 +271,8 @@ def test_what_is_in_several_groups_bears_all_names(tmp_path):
     with pytest.warns(FormatWarning) as caught:
         domain = read_domain(written(tmp_path, corners(0) + SQUARE + groups))
     assert [str(w.message).split(": ", 1)[1] for w in caught] == [
-        "curves that are in several physical groups bear the names of all: a|b",
-        "surfaces that are in several physical groups bear the names of all: s|t",
+        "curves that are in several physical groups have the names of all: a|b",
+        "surfaces that are in several physical groups have the names of all: s|t",
     ]
     assert set(domain.names) == {"a", "a|b", "b", "c"}
     assert {name: domain.names[name] for name in "abc"} == {"a": 1, "b": 12, "c": 13}
