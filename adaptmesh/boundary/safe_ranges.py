@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from adaptmesh import ragged
 from adaptmesh.domain.polyline import Polylines
 from adaptmesh.domain.side import Sides
+from adaptmesh.geometry.products import angles_between
 from adaptmesh.types import Bools, Index
 
 MAX_TURN = np.pi / 2
@@ -76,9 +77,7 @@ def _other_things(sides: Sides) -> tuple[NDArray[np.object_], Index]:
 def _turning_little(lines: Polylines, first: int) -> Index:
     """Ranges of edges of one side that turn by no more than `MAX_TURN` together."""
     d = np.diff(lines.points[lines.ends[first:]], axis=1)[:, 0]
-    before = np.roll(d, 1, axis=0)
-    cross = before[:, 0] * d[:, 1] - before[:, 1] * d[:, 0]
-    turn = np.abs(np.arctan2(cross, (before * d).sum(axis=1)))
+    turn = angles_between(np.roll(d, 1, axis=0), d)
     goes_on = np.diff(lines.side[first:], prepend=-1) == 0
     starts, total = [], 0.0
     for k, (follows, by) in enumerate(zip(goes_on.tolist(), turn.tolist(), strict=True)):

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from adaptmesh.geometry.products import cross
 from adaptmesh.types import Floats, Index
 
 FAR = 1e-12
@@ -54,7 +55,7 @@ def nearest_to_lines(points: Floats, starts: Floats, ends: Floats, line: Index) 
     stepped = (np.spacing(np.abs(p)) * np.abs(d[:, ::-1])).argmax(axis=1)
     rows = np.arange(len(far))
     step = np.spacing(np.abs(p[rows, stepped]))
-    best, best_off = p.copy(), np.abs(_cross(p - a, d))
+    best, best_off = p.copy(), np.abs(cross(p - a, d))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         slope = d[rows, 1 - stepped] / d[rows, stepped]
         for n in range(-PLACES, PLACES + 1):
@@ -62,13 +63,9 @@ def nearest_to_lines(points: Floats, starts: Floats, ends: Floats, line: Index) 
             q[rows, stepped] += n * step
             follows = (q - a)[rows, stepped] * slope
             q[rows, 1 - stepped] = a[rows, 1 - stepped] + follows
-            off = np.abs(_cross(q - a, d))
+            off = np.abs(cross(q - a, d))
             better = (off < best_off) & (np.abs(q - p).max(axis=1) <= reach[k])
             best[better], best_off[better] = q[better], off[better]
     out: Floats = points.copy()
     out[far] = best
     return out
-
-
-def _cross(u: Floats, v: Floats) -> Floats:
-    return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]

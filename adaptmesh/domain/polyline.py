@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.crossing import meet
+from adaptmesh.geometry.products import angles_between, cross
 from adaptmesh.types import Bools, Floats, Index
 
 from .joining import name_of_curve
@@ -353,13 +354,11 @@ def _looked_at(sides: Sides, points: Floats, side: Index, u: Floats, ends: Index
     samples[:, 0], samples[:, -1] = points[ends[:, 0]], points[ends[:, 1]]
 
     steps = np.diff(samples, axis=1)
-    cross = steps[:, :-1, 0] * steps[:, 1:, 1] - steps[:, :-1, 1] * steps[:, 1:, 0]
-    along = (steps[:, :-1] * steps[:, 1:]).sum(axis=2)
-    turn = np.abs(np.arctan2(cross, along)).sum(axis=1)
+    turn = angles_between(steps[:, :-1], steps[:, 1:]).sum(axis=1)
     vector = samples[:, -1] - samples[:, 0]
     off = samples - samples[:, :1]
     length = np.hypot(*vector.T)
-    area = np.abs(off[..., 0] * vector[:, None, 1] - off[..., 1] * vector[:, None, 0]).max(axis=1)
+    area = np.abs(cross(off, vector[:, None])).max(axis=1)
     reach = np.hypot(off[..., 0], off[..., 1]).max(axis=1)
     height = np.where(length > 0, area / np.where(length > 0, length, 1), reach)
     turn[(length == 0) & (reach > 0)] = np.inf  # there and back again

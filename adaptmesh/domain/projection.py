@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from adaptmesh.geometry.products import angles_between, cross
 from adaptmesh.types import Floats, Index
 
 from .data import DomainData
@@ -97,7 +98,7 @@ def _on_straight(
     rows, major = np.arange(len(side)), np.abs(d).argmax(axis=1)
     share = np.clip((w * d).sum(axis=1) / (d * d).sum(axis=1), 0, 1)
     beyond = np.hypot(*(w - share[:, None] * d).T)
-    beside = np.abs(w[:, 0] * d[:, 1] - w[:, 1] * d[:, 0]) / np.hypot(*d.T)
+    beside = np.abs(cross(w, d)) / np.hypot(*d.T)
     off = np.where((share > 0) & (share < 1), beside, beyond)
     return w[rows, major] / d[rows, major], np.ldexp(off, exponent)
 
@@ -177,10 +178,7 @@ def _bent_little(sides: Sides, parts: SideParts) -> SideParts:
     while len(side):
         du = u[:, 1] - u[:, 0]
         d = [sides.derivative(side, u[:, 0] + share * du) for share in (1e-3, 0.25, 0.75, 0.999)]
-        turns = [
-            np.abs(np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1)))
-            for a, b in itertools.pairwise(d)
-        ]
+        turns = [angles_between(a, b) for a, b in itertools.pairwise(d)]
         bent = (np.sum(turns, axis=0) > BENT) & (du > SHORTEST * np.maximum(1, u[:, 1]))
         done.append((side[~bent], u[~bent]))
         (low, high), side = u[bent].T, np.repeat(side[bent], 2)

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh.curves import Curve
+from adaptmesh.geometry.products import angles_between
 from adaptmesh.types import Bools, Floats, Index, Ints
 from adaptmesh.value import Value
 
@@ -250,9 +251,7 @@ class Sides(Value):
 
 def turns_between(vectors: Floats) -> Floats:
     """Angles between successive vectors (k, 2), (k - 1,)."""
-    before, after = vectors[:-1], vectors[1:]
-    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    return np.abs(np.arctan2(cross, (before * after).sum(axis=1)))
+    return angles_between(vectors[:-1], vectors[1:])
 
 
 def in_canonical_direction(points: Floats, pairs: Index) -> Index:
