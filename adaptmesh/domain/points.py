@@ -63,8 +63,9 @@ class CurvePoints(_Plain):
 class Chords(_Plain):
     """Pairs of points of a domain of curves, (k, 2, 2), or one (2, 2).
 
-    Rows of it are such pairs again. They remember their curves as long as the coordinates are not
-    changed.
+    Rows of it are such pairs again, and so are pairs of one domain that are joined by
+    `numpy.concatenate` or `numpy.stack`. They remember their curves as long as the coordinates are
+    not changed.
     """
 
     _domain: DomainData | None = None
@@ -90,6 +91,16 @@ class Chords(_Plain):
             found.shape == (*pairs.shape, 2) and pairs.ndim in (1, 2) and pairs.shape[-1:] == (2,)
         )
         return Chords.of(self._domain, pairs, found) if is_row else found
+
+    def __array_function__(self, function: Any, types: Any, args: Any, options: Any) -> Any:
+        result = super().__array_function__(function, types, args, options)
+        if function in (np.concatenate, np.vstack, np.stack) and isinstance(args[0], (list, tuple)):
+            parts = [part for part in args[0] if isinstance(part, Chords) and part._domain]
+            if len(parts) == len(args[0]) and len({id(part._domain) for part in parts}) == 1:
+                pairs = function([part._pairs for part in parts])
+                if result.shape == (*pairs.shape, 2) and pairs.shape[1:] == (2,):
+                    return Chords.of(parts[0]._domain, pairs, _plain(result))
+        return result
 
     @property
     def cubic_pieces(self) -> Callable[[], CubicPieces]:

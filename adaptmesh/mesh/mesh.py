@@ -34,7 +34,8 @@ class Mesh(MeshData):
     regions : (m,) array of int32, optional
         Region of each triangle, 0 where it has no name; see `region_names`.
     edges : (k, 2) array of int32, optional
-        The constrained edges: the boundary and the internal lines of the domain.
+        The constrained edges: the boundary and the internal lines of the domain. Where that is
+        curved, ``points[edges]`` are chords; measure distances from `domain` or its `sides`.
     edge_tags : (k,) array of int32, optional
         Tag of each constrained edge, 0 where it has no name; see `names`.
     names : mapping of str to int, optional

@@ -75,6 +75,11 @@ def test_rows_of_pairs_and_pairs_one_by_one(transform):
     assert off(everything[is_hole].copy(), on_hole(transform)) < small
     walls = [domain.points[rows(domain, name)] for name in ("arc", "hole")]
     assert off(walls, on_arc(transform)) < small
+    for join in (np.concatenate, np.vstack, tuple):
+        assert off(join(walls), on_arc(transform)) < small
+        assert off(join(walls), on_hole(transform)) < small
+    singly = np.stack([domain.points[s] for s in rows(domain, "hole")])
+    assert off(singly, on_hole(transform)) < small
     half = rows(domain, "hole")[::2]  # every other chord, each with its curve
     d = metrics.Geometry(domain.points[half]).distances(on_hole(transform))
     assert (d < small).sum() > 150 and d.max() > 1e-3 * extent
@@ -120,6 +125,9 @@ def test_pairs_whose_coordinates_are_changed_are_plain():
     kept *= 2.0
     changed = domain.points[rows(domain, "hole")]
     np.asarray(changed)[0, 0] += 0.5
+    apart = np.concatenate([hole, hole], axis=1)
+    turned = np.concatenate([hole, np.zeros((1, 2, 2))])
+    assert not hasattr(apart, "cubic_pieces") and not hasattr(turned, "cubic_pieces")
     for array in (moved, kept, changed):
         assert not hasattr(array, "cubic_pieces")
         metrics.Geometry(array)
