@@ -36,6 +36,7 @@ _OWN = re.compile(
     r"(nastran|medit|gmsh|netgen|su2|avsucd|ugrid|obj):.*|point_tags|facet_normals|GLOBAL_ID"
 )
 """Data that are numbers of parts or made by meshio, not fields."""
+_LARGEST = 2.0**62
 _MADE_UP = re.compile(r"cd\d_-?\d+")
 """Names that meshio writes for Netgen where there are none."""
 
@@ -112,7 +113,7 @@ def _labelled(parts: Parts, kind: str) -> tuple[Array, Array, dict[str, int]]:
     cells = np.concatenate([parts.cells[i][1][:, :width] for i in blocks]).astype(np.int64)
     for key in NUMBERS:
         numbers = _of_blocks(parts.cell_data.get(key, ()), parts, blocks)
-        if numbers is not None and numbers.ndim == 1 and np.array_equal(numbers, np.rint(numbers)):
+        if numbers is not None and numbers.ndim == 1 and _are_whole(numbers):
             tags = numbers.astype(np.int64)
             if key == "cell_tags":
                 return cells, *_of_families(tags, parts.families, kind)
@@ -128,6 +129,12 @@ def _labelled(parts: Parts, kind: str) -> tuple[Array, Array, dict[str, int]]:
         if items and not name.startswith("gmsh:"):
             sets[name] = np.concatenate(items)
     return cells, *_of_sets(sets, len(cells), kind)
+
+
+def _are_whole(numbers: Array) -> bool:
+    """Whether all are whole numbers that fit into 64 bits."""
+    small = np.abs(numbers.astype(np.float64)) < _LARGEST  # false for NaN
+    return bool(small.all()) and np.array_equal(numbers, np.rint(numbers))
 
 
 def _of_blocks(values: Sequence[Array | None], parts: Parts, blocks: Iterable[int]) -> Array | None:

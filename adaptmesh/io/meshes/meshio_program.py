@@ -60,19 +60,17 @@ def _work(task: str, kind: str, file: str, seconds: int, memory: int) -> None:
 
 
 def _limit(seconds: int, memory: int) -> None:
-    """Bound time and memory, where the system can."""
+    """Bound time and memory, where the system can: memory on Linux only."""
     try:
         import resource
     except ImportError:  # Windows
         return
-    with open("/proc/self/statm") if os.path.exists("/proc/self/statm") else io.StringIO("0") as f:  # noqa: PTH110, PTH123
-        used = int(f.read().split()[0]) * resource.getpagesize()
-    for what, bound in (
-        (resource.RLIMIT_CPU, seconds),
-        (resource.RLIMIT_AS, used + memory),
-        (resource.RLIMIT_FSIZE, memory),
-        (resource.RLIMIT_CORE, 0),
-    ):
+    bounds = {resource.RLIMIT_CPU: seconds, resource.RLIMIT_CORE: 0}
+    in_use = Path("/proc/self/statm")
+    if in_use.exists():
+        used = int(in_use.read_text().split()[0]) * resource.getpagesize()
+        bounds |= {resource.RLIMIT_AS: used + memory, resource.RLIMIT_FSIZE: memory}
+    for what, bound in bounds.items():
         hard = resource.getrlimit(what)[1]
         bound = bound if hard == resource.RLIM_INFINITY else min(bound, hard)
         resource.setrlimit(what, (bound, hard))

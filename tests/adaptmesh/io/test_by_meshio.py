@@ -250,6 +250,23 @@ def test_abaqus_of_others(tmp_path):
     assert mesh.triangles_in("plate").tolist() == [0]
 
 
+@pytest.mark.parametrize("number", ["inf", "nan", "1e300", "0.5"])
+def test_numbers_of_regions_that_are_none_are_a_field_or_refused(number, tmp_path, forked):
+    text = f"""VARIABLES = "X", "Y", "regions"
+ZONE NODES = 3, ELEMENTS = 1, DATAPACKING = BLOCK, ZONETYPE = FETRIANGLE,
+VARLOCATION = ([3] = CELLCENTERED)
+0.0 1.0 0.0
+0.0 0.0 1.0
+{number}
+1 2 3
+"""
+    path = tmp_path / "a.dat"
+    path.write_text(text)
+    assert am.read(path).regions.tolist() == [0]
+    path.write_text(text.replace(number, "7.0"))
+    assert am.read(path).regions.tolist() == [7]
+
+
 SU2 = """% by hand
 NDIME = 2
 NELEM= 2
