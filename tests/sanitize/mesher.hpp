@@ -38,25 +38,45 @@ inline const std::vector<Metric>& metrics_of_unit_square() {
     return all;
 }
 
-// A metric, moved to where the points are.
-class MovedMetric {
-  public:
-    MovedMetric(const Metric& metric, const std::vector<Point>& points) : metric_(metric) {
-        low_ = points.front();
-        Point high = low_;
+// Where points are.
+struct Frame {
+    Point low;
+    double side;  // of the box around them
+    bool is_far;  // from the origin, so that coordinates are rounded
+
+    explicit Frame(const std::vector<Point>& points) : low(points.front()) {
+        Point high = low;
+        double largest = 0;
         for (Point p : points) {
-            low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
+            low = {std::min(low.x, p.x), std::min(low.y, p.y)};
             high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+            largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
         }
-        side_ = std::max(high.x - low_.x, high.y - low_.y);
+        side = std::max(high.x - low.x, high.y - low.y);
+        is_far = largest > 1e3 * side;
     }
 
+    Point in_unit_square(Point p) const { return {(p.x - low.x) / side, (p.y - low.y) / side}; }
+};
+
+// Whether their box is not too small or large for products of lengths.
+inline bool has_extent(const std::vector<Point>& points) {
+    if (points.empty()) return false;
+    const double side = Frame(points).side;
+    return side > 1e-60 && side < 1e60;
+}
+
+// A metric of the unit square, moved to where the points are.
+class MovedMetric {
+  public:
+    MovedMetric(const Metric& metric, const std::vector<Point>& points)
+        : metric_(metric), frame_(points) {}
+
     // Sizes beyond that cannot be held by a tensor.
-    bool is_defined() const { return side_ > 1e-60 && side_ < 1e60; }
+    bool is_defined() const { return frame_.side > 1e-60 && frame_.side < 1e60; }
 
     Tensor at(Point p) const {
-        const Point unit = {(p.x - low_.x) / side_, (p.y - low_.y) / side_};
-        return (1 / (side_ * side_)) * metric_(unit);
+        return (1 / (frame_.side * frame_.side)) * metric_(frame_.in_unit_square(p));
     }
 
     MetricField field() const {
@@ -68,8 +88,7 @@ class MovedMetric {
 
   private:
     const Metric& metric_;
-    Point low_{};
-    double side_ = 0;
+    Frame frame_;
 };
 
 // The sub-edges of a triangulation as the pieces of a boundary, cut into unit parts.

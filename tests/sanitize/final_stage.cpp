@@ -1,6 +1,4 @@
 // Meshes before and after the final optimisation, judged by sums over many samples of the metric.
-#pragma once
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,17 +12,20 @@
 #include "adaptmesh/core/mesher/optimise.hpp"
 #include "adaptmesh/core/placements/along_edges.hpp"
 #include "adaptmesh/core/placements/front.hpp"
+#include "tests/sanitize/input.hpp"
 #include "tests/sanitize/mesher.hpp"
 
 namespace sanitize {
 
-inline const std::vector<Point>& unit_square() {
+namespace {
+
+const std::vector<Point>& unit_square() {
     static const std::vector<Point> corners = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     return corners;
 }
 
 // The unit square, filled and optimised, but for the last stage.
-inline MetricMesh unfinished_square(const MovedMetric& metric, Monitor& monitor) {
+MetricMesh unfinished_square(const MovedMetric& metric, Monitor& monitor) {
     const std::vector<Segment> sides = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
     Triangulation outside;
     const auto triangulated = triangulate(unit_square(), sides, {}, monitor, &outside);
@@ -43,7 +44,7 @@ inline MetricMesh unfinished_square(const MovedMetric& metric, Monitor& monitor)
 }
 
 // By the midpoint rule with many points.
-inline double sampled_length(const MovedMetric& metric, Point p, Point q) {
+double sampled_length(const MovedMetric& metric, Point p, Point q) {
     constexpr int SAMPLES = 200;
     double sum = 0;
     for (int k = 0; k < SAMPLES; ++k) {
@@ -55,7 +56,7 @@ inline double sampled_length(const MovedMetric& metric, Point p, Point q) {
 }
 
 // 4 sqrt(3) area / (sum of squared sides), the area from samples in a grid.
-inline double sampled_quality(const MovedMetric& metric, Point a, Point b, Point c) {
+double sampled_quality(const MovedMetric& metric, Point a, Point b, Point c) {
     constexpr int SAMPLES = 40;
     double density = 0;
     int count = 0;
@@ -78,7 +79,7 @@ struct Judgement {
     double share_off_unit, worst_quality;
 };
 
-inline Judgement judged(const MetricMesh& mesh, const MovedMetric& metric) {
+Judgement judged(const MetricMesh& mesh, const MovedMetric& metric) {
     int edges = 0, off = 0;
     double worst = 1;
     for (Index t = 0; t < mesh.topology.triangle_count(); ++t) {
@@ -95,7 +96,7 @@ inline Judgement judged(const MetricMesh& mesh, const MovedMetric& metric) {
     return {double(off) / edges, worst};
 }
 
-inline bool are_same(const MetricMesh& a, const MetricMesh& b) {
+bool are_same(const MetricMesh& a, const MetricMesh& b) {
     const auto same_place = [](const Vertex& v, const Vertex& w) {
         return v.at.x == w.at.x && v.at.y == w.at.y;
     };
@@ -108,19 +109,19 @@ inline bool are_same(const MetricMesh& a, const MetricMesh& b) {
            std::equal(t.begin(), t.end(), u.begin(), u.end(), same_corners);
 }
 
-inline void expect(bool holds, const char* what) {
+void expect(bool holds, const char* what) {
     if (holds) return;
     std::printf("FAILED in the final optimisation: %s\n", what);
     std::exit(1);
 }
 
-inline MetricMesh finished(MetricMesh mesh, const MovedMetric& metric, Monitor& monitor) {
+MetricMesh finished(MetricMesh mesh, const MovedMetric& metric, Monitor& monitor) {
     final_optimisation(mesh, metric.field(), monitor);
     return mesh;
 }
 
 // Anisotropic along a sine wave, `scale` times coarser: axes turn within an edge where it bends.
-inline Tensor ridge(Point p, double scale) {
+Tensor ridge(Point p, double scale) {
     constexpr double PI = 3.141592653589793;
     const double t = p.y - 0.5 - 0.2 * std::sin(2 * PI * p.x);
     const double slope = -0.4 * PI * std::cos(2 * PI * p.x), norm = std::hypot(slope, 1);
@@ -130,7 +131,10 @@ inline Tensor ridge(Point p, double scale) {
     return (1 / (scale * scale)) * m;
 }
 
-inline void check_final_optimisation(Monitor& monitor) {
+}  // namespace
+
+void check_final_optimisation() {
+    Monitor& monitor = sanitize::monitor();
     const Metric jump = [](Point p) {
         return metrics::from_size(std::hypot(p.x - 0.45, p.y - 0.55) < 0.2 ? 0.008 : 0.4);
     };
