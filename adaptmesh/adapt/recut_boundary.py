@@ -1,4 +1,4 @@
-"""The boundary polylines of a mesh cut again where they are not unit (core/recut.hpp)."""
+"""The boundary polylines of a mesh cut again where they are not unit (core/edit/recut.hpp)."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Metric lengths of straight edges, measured by the core with the exact metric.
 
-`core/edge_sampler.hpp` explains how.
+`core/mesher/edge_sampler.hpp` explains how.
 """
 
 from __future__ import annotations

@@ -123,7 +123,7 @@ def _meshed(
     field: ControlSpace,
     monitor: Monitor,
 ) -> MeshArrays:
-    """The stages after the boundary is cut: see core/generate.hpp."""
+    """The stages after the boundary is cut: see core/mesher/generate.hpp."""
     try:
         return generate_in_core(
             boundary,

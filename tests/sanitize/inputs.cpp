@@ -115,6 +115,8 @@ std::vector<Input> inputs() {
         add_ring(input, circle(30, 1000));
         out.push_back(input);
     }
+    Input framed{"framed grid", grid(12, 9, 1), {{0, 11}, {11, 107}, {107, 96}, {96, 0}}, {}};
+    out.push_back(framed);
     Input rings{"nested rings", {}, {}, {{}, {}, true}};
     for (int k = 1; k <= 6; ++k) add_ring(rings, circle(5 * k, k));
     out.push_back(rings);

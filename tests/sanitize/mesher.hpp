@@ -41,8 +41,9 @@ inline const std::vector<Metric>& metrics_of_unit_square() {
 // Where points are.
 struct Frame {
     Point low;
-    double side;  // of the box around them
-    bool is_far;  // from the origin, so that coordinates are rounded
+    double side;      // of the box around them
+    bool is_far;      // from the origin, so that coordinates are rounded
+    double rounding;  // a few units in the last place of coordinates
 
     explicit Frame(const std::vector<Point>& points) : low(points.front()) {
         Point high = low;
@@ -54,6 +55,7 @@ struct Frame {
         }
         side = std::max(high.x - low.x, high.y - low.y);
         is_far = largest > 1e3 * side;
+        rounding = 0x1p-49 * largest;
     }
 
     Point in_unit_square(Point p) const { return {(p.x - low.x) / side, (p.y - low.y) / side}; }

@@ -115,7 +115,7 @@ void run_recovery(const Input& input) {
     }
     const double scale = 1 / (frame.side * frame.side);
     const Tensor hessian{2 * scale, -1 * scale, 4 * scale};
-    const bool is_grid = input.name.rfind("grid", 0) == 0 && !frame.is_far;
+    const bool is_grid = input.name == "framed grid" && !frame.is_far;
 
     const metrics::Adjacency neighbours(mesh.triangles.data(), m, n);
     metrics::QuadraticFit fit(&mesh.points[0].x, values.data(), neighbours);
@@ -160,7 +160,8 @@ void run_segments(const Input& input) {
         const double x = frame.low.x + frame.side * (random() % 1000) / 1000.0;
         const double y = frame.low.y + frame.side * (random() % 1000) / 1000.0;
         const metrics::OnSegment found = segments.nearest(x, y);
-        const double distance = std::hypot(found.x - x, found.y - y), slack = 1e-9 * frame.side;
+        const double distance = std::hypot(found.x - x, found.y - y),
+                     slack = 1e-9 * frame.side + frame.rounding;
         const double size = spreading.at(x, y).first;
         for (std::size_t i = 0; i < sizes.size(); ++i) {
             const double to_end = std::hypot(ends[2 * i] - x, ends[2 * i + 1] - y);

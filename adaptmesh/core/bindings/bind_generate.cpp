@@ -84,7 +84,7 @@ void bind_generate(nb::module_& m) {
         .def("__init__", &make_boundary, nb::arg("points"), nb::arg("tensors"), nb::arg("segments"),
              nb::arg("owners"), nb::arg("pieces"), nb::arg("piece_segments"), nb::arg("is_chord"),
              nb::arg("cuts"), nb::arg("cut_tensors"), nb::arg("cut_pieces"), nb::arg("ties"),
-             "See core/boundary_cuts.hpp; ties are (piece, image, is_reversed).");
+             "See core/mesher/boundary_cuts.hpp; ties are (piece, image, is_reversed).");
 
     m.def("generate", &generate_arrays, nb::arg("boundary"), nb::arg("holes"), nb::arg("seeds"),
           nb::arg("nesting"), nb::arg("sample_points"), nb::arg("sample_tensors"),

@@ -2,7 +2,7 @@
 
 No search for overlapping triangles is needed. Positive triangles contain a point of the plane as
 many times as their border winds around it, and that number changes only across the border, there
-by one. So a plane sweep over the border edges alone decides it (`border_sweep.hpp`): no two of them
+by one. So a plane sweep over the border edges decides it (core/validate/border_sweep.hpp): no two
 cross, and on the left of each lies one triangle, on the right none. Every decision is exact.
 """
 

@@ -1,6 +1,6 @@
 """The last rounds of a mesh: changes that are measured before they are made.
 
-tests/sanitize/final_stage.hpp compares meshes before and after them.
+tests/sanitize/final_stage.cpp compares meshes before and after them.
 """
 
 import numpy as np
