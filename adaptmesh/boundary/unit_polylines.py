@@ -148,10 +148,10 @@ def periodic_polylines(sides: Sides, lines: Polylines) -> Polylines:
         differing = [i for i, j in pairs if counts[i] != counts[j]]
         if not differing:
             return lines
-    x, y = lines.points[sides.ends[differing[0], 0]]
+    first, second = sides.images[differing[0]].names
     raise DomainError(
-        f"the periodic boundary that begins at ({x:g}, {y:g}) and its image cannot be cut alike: "
-        "what comes near one of them needs more vertices there"
+        f"{first!r} and {second!r} cannot be cut alike: what comes near one of them needs more "
+        "vertices there"
     )
 
 

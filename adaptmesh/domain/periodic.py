@@ -175,10 +175,11 @@ def with_images(sides: Sides, pairs: Iterable[PeriodicPair]) -> Sides:
     is_frozen = sides.is_frozen.copy()
     for pair in pairs:
         is_frozen[pair.sides] |= is_frozen[pair.sides].any(axis=1, keepdims=True)
+        names = (pair.first, pair.second)
         for i, j in pair.sides.tolist():
             is_reversed = _is_reversed(sides, i, j, pair.motion)
-            images[i] = Image(j, pair.motion, is_reversed)
-            images[j] = Image(i, pair.motion.inverse(), is_reversed)
+            images[i] = Image(j, pair.motion, is_reversed, names)
+            images[j] = Image(i, pair.motion.inverse(), is_reversed, names)
     return replace(sides, images=images, is_frozen=is_frozen)
 
 

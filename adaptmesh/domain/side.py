@@ -119,11 +119,23 @@ class SideParts(NamedTuple):
 
 @dataclass(frozen=True)
 class Image:
-    """The side that is the image of another, by which motion, and whether it runs backwards."""
+    """The side that is the image of another.
+
+    Attributes
+    ----------
+    side : int
+    motion : Motion
+        From the other one to it.
+    is_reversed : bool
+        Whether the image of the first end is the second end.
+    names : (str, str)
+        The two boundaries that are periodic.
+    """
 
     side: int
     motion: Motion
     is_reversed: bool
+    names: tuple[str, str]
 
 
 @dataclass(frozen=True, eq=False)

@@ -111,3 +111,18 @@ def test_images_of_a_periodic_arc_have_its_vertices():
     np.testing.assert_allclose(
         mesh.points[pairs[:, 0]] + [0, 3], mesh.points[pairs[:, 1]], atol=1e-12
     )
+
+
+def test_periodic_sides_that_cannot_be_cut_alike_are_named(monkeypatch):
+    """One side needs ever more vertices than its image: here as images are never accepted."""
+    low, high = Arc((0, 0), 1, np.pi, 2 * np.pi), Arc((0, 3), 1, np.pi, 2 * np.pi)
+    domain = am.Domain.from_curves(
+        [low, Line((1, 0), (1, 3)), high, Line((-1, 3), (-1, 0))],
+        names={"low": [0], "high": [2]},
+    ).with_periodic("low", "high", translation=(0, 3))
+    monkeypatch.setattr(
+        "adaptmesh.boundary.unit_polylines._with_images",
+        lambda sides, points, pairs: points.where(points.side != pairs[0][1]),
+    )
+    with pytest.raises(am.DomainError, match="'low' and 'high' cannot be cut alike"):
+        am.generate(domain, 0.1)
