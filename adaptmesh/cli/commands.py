@@ -63,8 +63,11 @@ from .output import (
 )
 from .results import format_counts, show_progress, write_results
 
-OUTLINE_KINDS = ("mesh", "region")
-"""Values of --show for an outline."""
+OUTLINE_PICTURES = (
+    "an outline, which is drawn with --show mesh or region and without field or metric: generate a "
+    "mesh to see more"
+)
+"""The rest of messages about options that an outline does not have."""
 
 app = typer.Typer(
     name="adaptmesh",
@@ -302,18 +305,9 @@ def plot(
         check_outputs(picture=output)
         options: Any = {"path": output, "bounds": bounds, "title": title}
         if is_outline(mesh):
-            if (
-                field is not None
-                or ellipses
-                or not request.is_empty
-                or show.value not in OUTLINE_KINDS
-            ):
-                raise typer.BadParameter(
-                    f"{mesh} is an outline, which is drawn with --show mesh or region and without "
-                    "field or metric: generate a mesh to see more"
-                )
-            with report_as_usage_error():
-                am.plot(am.read_domain(mesh), show=show.value, **options)
+            if field is not None or ellipses or not request.is_empty:
+                raise typer.BadParameter(f"{mesh} is {OUTLINE_PICTURES}")
+            _plot_outline(mesh, show, options)
         else:
             drawn = am.read(mesh)
             control = None if request.is_empty else request.control_space(drawn)
@@ -321,6 +315,15 @@ def plot(
             with report_as_usage_error():
                 am.plot(drawn, control, show=colours, ellipses=ellipses, **options)
         write(f"wrote {output}")
+
+
+def _plot_outline(path: Path, show: Show, options: dict[str, Any]) -> None:
+    import adaptmesh as am
+
+    if show not in (Show.mesh, Show.region):
+        raise typer.BadParameter(f"{path} is {OUTLINE_PICTURES}")
+    with report_as_usage_error():
+        am.plot(am.read_domain(path), show=show.value, **options)
 
 
 @app.command(epilog="Example: adaptmesh convert part.msh part.vtu")

@@ -39,7 +39,7 @@ def delaunay(points: ArrayLike) -> Ints:
 
     See Also
     --------
-    adaptmesh.generate : a mesh of a domain, with edges of the lengths asked for.
+    adaptmesh.generate : a mesh of a domain, with edges of the requested lengths.
 
     Notes
     -----

@@ -28,7 +28,7 @@ MeshArrays = tuple[Floats, Ints, Ints, Ints, Ints]
 PLACEMENTS = {"front": Placement.front, "edges": Placement.edges}
 
 MAX_VERTICES = 5_000_000
-"""The largest mesh that is made if nothing else is said."""
+"""Default of the largest number of vertices allowed."""
 
 
 def generate(
@@ -49,20 +49,21 @@ def generate(
         A size h; or a function of an (n, 2) array of points that returns sizes (n,), packed metrics
         (n, 3) = (m11, m12, m22) or tensors (n, 2, 2); or anything made by `metrics`.
     gradation : float, optional
-        Sizes grow by at most this factor from one unit edge to the next, above 1: beside jumps and
-        steep slopes of the metric, triangles are made smaller than it asks for, so that they can be
-        well shaped. 1.5 is usual. The mesh is then that of ``metric.graded(domain, gradation)``,
-        see `metrics.ControlSpace.graded`; two meshes more are made on the way. If not given, the
-        metric is taken as it is.
+        Largest growth of sizes from one unit edge to the next, a factor above 1, usually 1.5.
+        Beside jumps and steep slopes of the metric, sizes are reduced, so that triangles can have
+        a good shape. The mesh is then that of ``metric.graded(domain, gradation)``, see
+        `metrics.ControlSpace.graded`, which makes two more meshes. By default the metric is not
+        changed.
     placement : {"front", "edges"}
-        How points are placed. ``"front"``: so as to make unit triangles, layer after layer from the
-        constraints inwards, and along edges where that leaves gaps. ``"edges"``: only along edges
-        longer than unit, at equal metric shares (Borouchaki and George).
+        How points are placed. ``"front"``: as apexes of unit triangles, layer by layer from the
+        constraints inwards, and along edges in the remaining gaps. ``"edges"``: only along edges
+        longer than unit, at equal metric distances (Borouchaki and George).
     max_vertices : int
-        The largest mesh allowed. More is refused before anything is built, with the prediction.
+        Largest number of vertices allowed. A larger mesh is refused before meshing, with the
+        predicted number.
     progress : callable, optional
-        Called as ``progress(stage, fraction)`` with the name of the stage at work and how much of
-        all the work is done, from 0 to 1. An exception from it ends the work.
+        Called as ``progress(stage, fraction)`` with the name of the stage and the fraction of the
+        whole work done, from 0 to 1. An exception that it raises ends the work.
 
     Returns
     -------
@@ -71,16 +72,20 @@ def generate(
     Raises
     ------
     MetricError
-        The metric is not finite, not positive definite, or has the wrong shape somewhere.
+        If the metric is not finite, not positive definite, or of the wrong shape at a point.
     BudgetError
-        The mesh would have more than `max_vertices` vertices.
+        If the mesh would have more than `max_vertices` vertices.
     """
     check_is_domain(domain)
     if placement not in PLACEMENTS:
-        raise ValueError(f"placement={placement!r} is none of {', '.join(map(repr, PLACEMENTS))}")
+        raise ValueError(
+            f"placement: expected one of {', '.join(map(repr, PLACEMENTS))}, got {placement!r}"
+        )
     report = progress or (lambda stage, fraction: None)
     field = metrics.as_control_space(metric)
-    field(domain.points)  # a corner where it is no metric is named itself, not a point near it
+    field(
+        domain.points
+    )  # so that an error names a corner of the domain rather than a point near it
     if gradation is not None:
         report("grading the sizes", 0.0)
         field = graded_within_budget(domain, field, gradation, max_vertices)
@@ -92,7 +97,7 @@ def generate(
     report("cutting the boundary", 0.02)
     boundary = cut_boundary(domain, field, limit.max_vertices)
     with limit.explained():
-        arrays = _meshed(
+        arrays = _mesh_interior(
             domain, boundary, prediction, PLACEMENTS[placement], field, limit.monitor(report)
         )
     report("done", 1.0)
@@ -102,9 +107,9 @@ def generate(
 def graded_within_budget(
     domain: Domain, field: ControlSpace, gradation: float, max_vertices: int = MAX_VERTICES
 ) -> ControlSpace:
-    """The field graded over a domain, unless its mesh would be too large even as it is.
+    """Grade a field over a domain; refuse it first if its mesh would be too large.
 
-    Grading makes meshes, too, and sizes only smaller, so that what is too large is refused before.
+    Grading makes meshes, too, and only reduces sizes, so the field is checked before.
     """
     if not (isinstance(gradation, Real) and 1 < gradation < np.inf):
         raise MetricError(
@@ -115,7 +120,7 @@ def graded_within_budget(
     return field.graded(domain, gradation)
 
 
-def _meshed(
+def _mesh_interior(
     domain: Domain,
     boundary: BoundaryCuts,
     samples: Prediction,
@@ -141,7 +146,7 @@ def _meshed(
 
 
 def finished_mesh(domain: Domain, arrays: MeshArrays, regions: Ints) -> Mesh:
-    """A mesh as the core made it, with the names of its domain."""
+    """Make a `Mesh` of the arrays of the core, with the names of its domain."""
     points, triangles, _, edges, segments = arrays
     return Mesh(
         points=points,

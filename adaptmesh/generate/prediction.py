@@ -121,17 +121,17 @@ def _inscribed(domain: Domain, field: ControlSpace) -> _Polygon:
     curved = domain.curved
     border = domain.pieces[domain.piece_is_boundary]
     segment = domain.piece_segments[domain.piece_is_boundary]
-    on_run = curved.segment_paths[segment] >= 0
-    if not on_run.any():
+    on_path = curved.segment_paths[segment] >= 0
+    if not on_path.any():
         return _Polygon(domain.points, domain.triangles, border)
-    segment = segment[on_run]
+    segment = segment[on_path]
     path, u = curved.segment_paths[segment], curved.segment_parameters[segment]
     turned = ~inside_is_left_of(domain, segment)[:, None]
     u = np.where(turned, u[:, ::-1], u)
     chord = np.where(turned, domain.segments[segment][:, ::-1], domain.segments[segment])
 
     points, tensors = domain.points, field(domain.points)
-    triangles, edges = [domain.triangles], [border[~on_run]]
+    triangles, edges = [domain.triangles], [border[~on_path]]
     while len(chord):
         middle = len(points) + np.arange(len(chord), dtype=np.int32)
         u_middle = u.mean(axis=1)

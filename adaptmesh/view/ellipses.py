@@ -54,7 +54,7 @@ def choose_ellipses(points: Floats, tensors: Floats, max_count: int, frame: Fram
         Candidates for centres.
     tensors : (n, 3) array of float
         The metric there.
-    most : int
+    max_count : int
     frame : Frame
     """
     pixels = frame.factor * frame.pixel
