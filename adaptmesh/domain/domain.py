@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -127,6 +128,13 @@ class Domain(DomainData):
     def of_given(cls, given: Given) -> Domain:
         """The domain that is made with these arguments."""
         return cls.of_data(domain_of_segments(given))
+
+    @staticmethod
+    def of_mesh(mesh: Any, corner_angle: float | None = None, **options: Any) -> Domain:
+        """Return ``mesh.to_domain(corner_angle, **options)``; deprecated, use that instead."""
+        warnings.warn("Domain.of_mesh(mesh): use mesh.to_domain()", DeprecationWarning, 2)
+        out: Domain = mesh.to_domain(corner_angle, **options)
+        return out
 
     @classmethod
     def polygon(

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from adaptmesh import Domain, DomainError, Outline, repair
+from adaptmesh import Domain, DomainError, Outline, generate, repair
 from adaptmesh.curves import Circle
 
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
@@ -189,3 +189,11 @@ def test_none_is_as_if_not_given():
     for curves in (None, [], [None], Circle((0, 0), 1)):
         with pytest.raises(DomainError, match="curve"):
             Domain.from_curves(curves)
+
+
+def test_the_old_name_of_to_domain_still_works(plate):
+    mesh = generate(plate, 0.5)
+    with pytest.warns(DeprecationWarning, match="to_domain"):
+        assert Domain.of_mesh(mesh, straight_tolerance=1e-9) == mesh.to_domain(
+            straight_tolerance=1e-9
+        )
