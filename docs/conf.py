@@ -8,6 +8,9 @@ import pyvista
 
 import adaptmesh
 
+sys.path.insert(0, str(Path(__file__).parent))
+import floors
+
 project = "adaptmesh"
 author = "the adaptmesh authors"
 copyright = "the adaptmesh authors"
@@ -21,7 +24,7 @@ extensions = [
     "sphinx.ext.mathjax",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["_build", "generated/cli.md"]
+exclude_patterns = ["_build", "generated/cli.md", "generated/floors.md"]
 
 templates_path = ["_templates"]
 
@@ -69,3 +72,4 @@ def write_command_reference() -> None:
 
 
 write_command_reference()
+floors.write(Path(__file__).parent / "generated")

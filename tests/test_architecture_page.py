@@ -1,34 +1,33 @@
-"""The page on architecture draws the floors of the contracts, and names files that exist."""
+"""Files that the pages for newcomers point to are there, and the drawing has every floor."""
 
+import importlib.util
 import re
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent
-PAGE = (ROOT / "docs" / "architecture.md").read_text()
+ROOT = Path(__file__).parent.parent
+TOP = {"adaptmesh", "metrics", "tests", "docs", "examples"}
+PAGES = ["CONTRIBUTING.md", "docs/architecture.md", "docs/contributing.md"]
 
 
-def test_its_floors_are_those_of_the_contract():
-    tomllib = pytest.importorskip("tomllib", reason="Python 3.11")
-    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]
-    (layers,) = (c["layers"] for c in contracts["contracts"] if c["type"] == "layers")
-    table = PAGE.split("| floor |")[1].split("\n\n")[0]
-    rows = [row.split("|")[1] for row in table.splitlines()[2:]]
-    drawn = [set(re.findall(r"`(\w+)`", row)) for row in rows]
-    assert drawn == [set(re.findall(r"\w+", layer)) for layer in layers]
-
-
-def test_no_exceptions_from_the_contracts():
-    tomllib = pytest.importorskip("tomllib", reason="Python 3.11")
-    linter = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]
-    assert not linter.get("exclude_type_checking_imports", False)
-    for contract in linter["contracts"]:
-        assert not {"ignore_imports", "skip_descendants"} & contract.keys()
-
-
-def test_files_that_it_names_exist():
-    named = set(re.findall(r"`([\w/]+\.(?:py|cpp|hpp))`", PAGE)) - {"data.py"}
+@pytest.mark.parametrize("page", PAGES)
+def test_files_named_on_a_page_are_there(page):
+    text = (ROOT / page).read_text("utf-8")
+    paths = re.findall(r"`((?!build/|out/)[a-z_]+/[\w./-]+)`", text)
+    named = [path if path.split("/")[0] in TOP else f"adaptmesh/{path}" for path in paths]
     assert named
-    for name in named:
-        assert any((ROOT / package / name).is_file() for package in ("adaptmesh", "metrics")), name
+    assert [path for path in named if not (ROOT / path).exists()] == []
+
+
+def test_every_floor_is_drawn():
+    spec = importlib.util.spec_from_file_location("floors", ROOT / "docs" / "floors.py")
+    floors = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(floors)
+    names = [name for row in floors.layers() for name in row]
+    folders = {path.parent.name for path in (ROOT / "adaptmesh").glob("*/__init__.py")}
+    assert folders <= set(names)
+    drawing, table = floors.drawing(), floors.table()
+    for name in names:
+        assert f"`{name}`" in table
+        assert re.search(rf"<text [^>]*>(?:\d  )?{name}</text>", drawing)
