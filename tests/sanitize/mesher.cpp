@@ -98,7 +98,7 @@ void recut_lines(MetricMesh& mesh, const std::vector<SubEdge>& edges, const Move
 void run_mesher(const Input& input) {
     static std::size_t turn = 0;
     const auto& all = metrics_of_unit_square();
-    if (input.points.empty()) return;
+    triangulate(input.points, input.segments, input.options, monitor());  // or it is refused
     const MovedMetric metric(all[++turn % all.size()], input.points);
     if (!metric.is_defined()) return;
     for (Placement placement : {Placement::front, Placement::edges}) {
@@ -127,8 +127,9 @@ void run_mesher(const Input& input) {
 void run_edit(const Input& input) {
     static std::size_t turn = 0;
     const auto& all = metrics_of_unit_square();
-    if (input.points.empty()) return;
-    const MovedMetric metric(all[++turn % all.size()], input.points);
+    triangulate(input.points, input.segments, input.options, monitor());
+    if (++turn % 5 != 0) return;  // it takes as long as all else
+    const MovedMetric metric(all[turn % all.size()], input.points);
     const MovedMetric other(all[(turn + 1) % all.size()], input.points);
     if (!metric.is_defined()) return;
     const MetricMesh before = meshed(input, Placement::front, metric);
