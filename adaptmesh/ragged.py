@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from adaptmesh.types import Array, Floats, Index
+from .types import Array, Floats, Index
 
 
 def offsets(counts: Index) -> NDArray[np.intp]:

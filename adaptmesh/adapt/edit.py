@@ -21,7 +21,7 @@ import numpy as np
 from adaptmesh._core import FIXED, FREE, MetricMesh
 from adaptmesh.boundary.vertex_limit import Progress, VertexLimit
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.side import Sides
+from adaptmesh.domain.sides.side import Sides
 from adaptmesh.errors import DomainError
 from adaptmesh.generate.generate import finished_mesh
 from adaptmesh.generate.prediction import Prediction

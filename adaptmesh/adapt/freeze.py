@@ -9,8 +9,8 @@ import numpy as np
 from adaptmesh.curves import Curve, Line
 from adaptmesh.domain.data import with_fields
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.periodic import with_partners
 from adaptmesh.domain.periodic_corners import with_pairs
+from adaptmesh.domain.sides.periodic import with_partners
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.types import Bools, Floats
 

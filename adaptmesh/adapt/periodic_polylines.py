@@ -15,7 +15,7 @@ import numpy as np
 
 from adaptmesh import ragged
 from adaptmesh.boundary.edge_lengths import straight_lengths
-from adaptmesh.domain.side import Sides
+from adaptmesh.domain.sides.side import Sides
 from adaptmesh.mesh.boundary_polylines import BoundaryPolylines
 from adaptmesh.types import Bools, Floats, Index
 from metrics import ControlSpace

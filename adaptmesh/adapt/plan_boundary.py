@@ -21,8 +21,8 @@ import numpy as np
 from adaptmesh import ragged
 from adaptmesh.boundary.edge_lengths import straight_lengths
 from adaptmesh.boundary.unit_polylines import MAX_TURN, periodic_polylines, unit_polylines
-from adaptmesh.domain.polyline import Polylines, polylines_along
-from adaptmesh.domain.side import SideParts, SidePoints, Sides
+from adaptmesh.domain.sides.polyline import Polylines, polylines_along
+from adaptmesh.domain.sides.side import SideParts, SidePoints, Sides
 from adaptmesh.mesh.boundary_polylines import BoundaryPolylines
 from adaptmesh.types import Bools, Floats, Index
 from metrics import ControlSpace

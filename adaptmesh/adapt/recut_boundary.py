@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from adaptmesh import ragged
 from adaptmesh._core import MetricMesh
-from adaptmesh.domain.polyline import vertices_at
-from adaptmesh.domain.side import SidePoints
+from adaptmesh.domain.sides.polyline import vertices_at
+from adaptmesh.domain.sides.side import SidePoints
 from adaptmesh.mesh.boundary_polylines import BoundaryPolylines
 from adaptmesh.types import Index
 

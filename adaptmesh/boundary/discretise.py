@@ -7,7 +7,7 @@ import numpy as np
 from adaptmesh import ragged
 from adaptmesh._core import BoundaryCuts
 from adaptmesh.domain.data import DomainData
-from adaptmesh.domain.side import SidePoints, Sides
+from adaptmesh.domain.sides.side import SidePoints, Sides
 from adaptmesh.types import Ints
 from metrics import ControlSpace
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from adaptmesh import ragged
 from adaptmesh._core import LONGEST_CHORD, halve_chords
-from adaptmesh.domain.side import SideParts, Sides
+from adaptmesh.domain.sides.side import SideParts, Sides
 from adaptmesh.errors import BudgetError
 from adaptmesh.types import Array, Floats, Index
 from metrics import ControlSpace, tensor

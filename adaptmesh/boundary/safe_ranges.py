@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh import ragged
-from adaptmesh.domain.polyline import Polylines
-from adaptmesh.domain.side import Sides
+from adaptmesh.domain.sides.polyline import Polylines
+from adaptmesh.domain.sides.side import Sides
 from adaptmesh.geometry.products import angles_between
 from adaptmesh.types import Bools, Index
 

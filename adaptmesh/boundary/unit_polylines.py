@@ -16,9 +16,9 @@ from __future__ import annotations
 import numpy as np
 
 from adaptmesh import ragged
-from adaptmesh.domain.inscribed_polygon import MESH_TURN
-from adaptmesh.domain.polyline import Polylines, polylines_along
-from adaptmesh.domain.side import SideParts, SidePoints, Sides, turns_between
+from adaptmesh.domain.sides.inscribed_polygon import MESH_TURN
+from adaptmesh.domain.sides.polyline import Polylines, polylines_along
+from adaptmesh.domain.sides.side import SideParts, SidePoints, Sides, turns_between
 from adaptmesh.errors import BudgetError, DomainError
 from adaptmesh.types import Floats, Index
 from metrics import ControlSpace

@@ -16,7 +16,7 @@ import numpy as np
 
 import adaptmesh as am
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.polygons import given_of_polygons
+from adaptmesh.domain.polygons.shared_borders import given_of_polygons
 from adaptmesh.types import Floats
 
 Field = Callable[[Floats], Floats]

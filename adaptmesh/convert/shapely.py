@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.regions_as_polygons import regions_as_polygons
+from adaptmesh.domain.polygons.regions_as_polygons import (
+    regions_as_polygons,
+)
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon

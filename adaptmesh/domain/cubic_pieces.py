@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from adaptmesh import ragged
+from adaptmesh.domain.sides.paths import derivatives_of_parts, points_on
 from adaptmesh.types import Bools, Floats, Index, Ints
 
 from .data import DomainData
-from .paths import derivatives_of_parts, points_on
 
 CHORD, CUBIC = 1e-6, 1e-10
 """How far chords, and cubics, are off the curves at most, as shares of the extent of the domain."""

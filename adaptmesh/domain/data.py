@@ -9,13 +9,12 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from adaptmesh.domain.sides.inscribed_polygon import InscribedPolygon, sides_between
+from adaptmesh.domain.sides.periodic import PeriodicPair, with_images
+from adaptmesh.domain.sides.side import Sides
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Bools, Floats, Index, Ints
 from adaptmesh.value import Value, contents
-
-from .inscribed_polygon import InscribedPolygon, sides_between
-from .periodic import PeriodicPair, with_images
-from .side import Sides
 
 
 @dataclass(frozen=True)

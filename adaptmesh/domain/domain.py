@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from adaptmesh.curves import Curve
+from adaptmesh.domain.sides.motion import chosen_motion
 from adaptmesh.types import Floats
 from adaptmesh.value import contents
 
@@ -25,7 +26,6 @@ from .frozen import domain_with_frozen
 from .given import Given, given_rectangle
 from .inputs import ByLabel
 from .measures import area_of, segments_within
-from .motion import chosen_motion
 from .names import domain_with_names
 from .naming import Chosen
 from .periodic_corners import domain_with_pair

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from adaptmesh.checks import checked_number, checked_points
 from adaptmesh.curves import Curve
+from adaptmesh.domain.sides.skeleton import skeleton_of
 from adaptmesh.errors import DomainError
 
 from .data import DomainData
@@ -15,7 +16,6 @@ from .from_segments import enclosed
 from .inputs import ByLabel, Inside, checked_names, labelled
 from .named_sides import sides_of_domain, tags_of_sides
 from .naming import Chosen, chosen_tags, split_names
-from .skeleton import skeleton_of
 
 
 def domain_of_curves(

@@ -7,6 +7,17 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
+from adaptmesh.domain.polygons.polygon_input import (
+    is_collection,
+    shape_of_polygon,
+    shapes_of,
+    without_empty,
+)
+from adaptmesh.domain.polygons.ring_nesting import (
+    refuse_rings_out_of_place,
+    rings_with_labels,
+)
+from adaptmesh.domain.polygons.shared_borders import given_of_shapes
 from adaptmesh.errors import DomainError
 
 from .data import DomainData
@@ -14,9 +25,6 @@ from .from_segments import domain_of_segments, with_chosen_names
 from .given import Given
 from .inputs import ByLabel, checked_names, joined_rings, labelled
 from .naming import Chosen, split_names
-from .polygon_input import is_collection, shape_of_polygon, shapes_of, without_empty
-from .polygons import given_of_shapes
-from .ring_nesting import refuse_rings_out_of_place, rings_with_labels
 
 
 def domain_of_rings(

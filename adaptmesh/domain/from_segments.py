@@ -8,13 +8,13 @@ import numpy as np
 
 from adaptmesh._core import InputError, triangulate
 from adaptmesh.checks import checked_points, read_only
+from adaptmesh.domain.sides.inscribed_polygon import InscribedPolygon
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats, Ints
 
 from .data import DomainData, with_fields
 from .given import Given
 from .inputs import Inside, Label, checked_names, checked_segments
-from .inscribed_polygon import InscribedPolygon
 from .messages import fault_text
 from .named_sides import sides_of_domain
 from .naming import Selector, chosen_tags, split_names

@@ -7,12 +7,12 @@ from collections.abc import Iterable
 import numpy as np
 
 from adaptmesh.checks import checked_number
+from adaptmesh.domain.sides.paths import points_on
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.products import cross
 from adaptmesh.types import Bools, Floats, Ints
 
 from .data import DomainData
-from .paths import points_on
 
 SMALLEST_TOLERANCE = 1e-10  # of `segments_within`, as a share of the extent
 

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from adaptmesh.domain.sides.joining import name_of_curve
 from adaptmesh.errors import DomainError
 from adaptmesh.topology import triangles_beside
 from adaptmesh.types import Floats, Ints
 
 from .data import DomainData
 from .inputs import ByLabel, checked_names, numbered
-from .joining import name_of_curve
 from .messages import segment_text
 from .naming import LOOKS, Chosen, SideSamples, chosen_tags, split_names, straight_sides
 

@@ -17,6 +17,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from adaptmesh.domain.sides.motion import Motion
+from adaptmesh.domain.sides.periodic import PeriodicPair, pair_motion, periodic_pair, used_tolerance
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats, Int64s
 
@@ -25,8 +27,6 @@ from .from_segments import domain_of_segments
 from .frozen import domain_with_frozen
 from .given import given_of
 from .inputs import labelled
-from .motion import Motion
-from .periodic import PeriodicPair, pair_motion, periodic_pair, used_tolerance
 
 
 def domain_with_pair(

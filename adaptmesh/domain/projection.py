@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from adaptmesh.domain.sides.side import SideParts, Sides
 from adaptmesh.geometry.products import angles_between, cross
 from adaptmesh.types import Floats, Index
 
 from .data import DomainData
-from .side import SideParts, Sides
 
 if TYPE_CHECKING:
     from shapely import LineString

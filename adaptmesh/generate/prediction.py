@@ -10,7 +10,7 @@ import numpy as np
 import metrics
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.measures import inside_is_left_of
-from adaptmesh.domain.paths import points_on
+from adaptmesh.domain.sides.paths import points_on
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Bools, Floats, Ints
 from metrics import ControlSpace, tensor

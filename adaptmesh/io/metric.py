@@ -11,13 +11,13 @@ import numpy as np
 from adaptmesh.errors import FormatError, MetricError
 from adaptmesh.files.located import located, only_our_errors
 from adaptmesh.files.whole import read_bytes
+from adaptmesh.io.meshes.sol import companion, companions
 from adaptmesh.mesh.incoming import fields_of, mesh_of
 from adaptmesh.mesh.second_order import with_corners_only
 from adaptmesh.types import Array
 from metrics import Background
 
 from .formats import format_of
-from .meshes.sol import companion, companions
 from .read import PathLike
 from .solutions import SOLUTION_SUFFIXES, read_sizes_or_metrics
 

@@ -8,13 +8,13 @@ from typing import TypeAlias
 
 from adaptmesh.domain.outline import Outline
 from adaptmesh.files.located import located, only_our_errors
+from adaptmesh.io.meshes.outlines import outline_of
 from adaptmesh.mesh.incoming import fields_of, mesh_of
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.mesh.second_order import with_corners_only
 from adaptmesh.types import Array
 
 from .formats import format_of
-from .meshes.outlines import outline_of
 
 PathLike: TypeAlias = "str | os.PathLike[str]"
 

@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from adaptmesh.errors import FormatError
 from adaptmesh.files.located import located, only_our_errors
 from adaptmesh.files.whole import read_bytes, replace_files
+from adaptmesh.io.meshes.mtr import decode as decode_mtr
+from adaptmesh.io.meshes.sol import AT_VERTICES, SCALAR, TENSOR, Solution, decode, encode
 
-from .meshes.mtr import decode as decode_mtr
-from .meshes.sol import AT_VERTICES, SCALAR, TENSOR, Solution, decode, encode
 from .outgoing import solution_values
 
 SOLUTION_SUFFIXES = (".sol", ".solb", ".mtr")

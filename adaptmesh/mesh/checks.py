@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from adaptmesh.errors import DomainError
+from adaptmesh.mesh.validate.validate import InvalidMeshError
 
 from .mesh import Mesh
-from .validate.validate import InvalidMeshError
 
 
 def check_is_mesh(mesh: object) -> None:

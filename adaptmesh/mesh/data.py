@@ -11,7 +11,7 @@ import numpy as np
 
 from adaptmesh.checks import frozen_integers, frozen_reals, numbers, plane_points, rows
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.periodic import PeriodicSides
+from adaptmesh.domain.sides.periodic import PeriodicSides
 from adaptmesh.geometry.areas import triangle_areas
 from adaptmesh.types import Floats, Ints
 from adaptmesh.value import FrozenMapping, Value

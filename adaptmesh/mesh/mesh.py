@@ -10,7 +10,8 @@ from adaptmesh.domain.background import TriangleMesh
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import ByLabel
 from adaptmesh.domain.naming import Chosen
-from adaptmesh.domain.periodic import PeriodicPair, PeriodicSides
+from adaptmesh.domain.sides.periodic import PeriodicPair, PeriodicSides
+from adaptmesh.mesh.validate.validate import Validity, validate
 from adaptmesh.types import Ints
 
 from .cleaned import cleaned_mesh
@@ -18,7 +19,6 @@ from .data import MeshData
 from .names import mesh_with_names
 from .periodic_vertices import periodic_vertices
 from .to_domain import domain_of_mesh
-from .validate.validate import Validity, validate
 
 
 @dataclass(frozen=True, eq=False, repr=False)

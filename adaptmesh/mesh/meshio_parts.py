@@ -17,8 +17,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from adaptmesh.errors import FormatError, FormatWarning
-from adaptmesh.mesh.incoming import Content, refuse_cells
 from adaptmesh.types import Array
+
+from .incoming import Content, refuse_cells
 
 NUMBERS = (
     "gmsh:physical", "medit:ref", "cell_tags", "nastran:ref", "netgen:index", "su2:tag",

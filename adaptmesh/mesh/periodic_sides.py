@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from adaptmesh.domain.motion import Motion
-from adaptmesh.domain.periodic import PeriodicSides
+from adaptmesh.domain.sides.motion import Motion
+from adaptmesh.domain.sides.periodic import PeriodicSides
 from adaptmesh.errors import FormatError
 
 from .data import MeshData

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from adaptmesh.domain.periodic import PeriodicPair, PeriodicSides
+from adaptmesh.domain.sides.periodic import PeriodicPair, PeriodicSides
 from adaptmesh.types import Ints
 
 from .data import MeshData

@@ -18,7 +18,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from adaptmesh.domain.projection import project
-from adaptmesh.domain.side import Sides
+from adaptmesh.domain.sides.side import Sides
 from adaptmesh.topology import edge_keys
 from adaptmesh.types import Floats, Index, Int64s
 

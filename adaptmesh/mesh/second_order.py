@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh.errors import FormatWarning
-from adaptmesh.mesh.incoming import Content, check_vertices
+
+from .incoming import Content, check_vertices
 
 
 def with_corners_only(content: Content) -> Content:

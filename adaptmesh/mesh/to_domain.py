@@ -14,7 +14,6 @@ from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import labelled
 from adaptmesh.domain.periodic_corners import domain_with_pair
 from adaptmesh.errors import DomainError
-from adaptmesh.mesh.seeds import hole_points, region_points
 from adaptmesh.mesh.validate.subject import Finding, Subject
 from adaptmesh.topology import edge_keys, regions_beside
 from adaptmesh.types import Bools, Ints
@@ -22,6 +21,7 @@ from adaptmesh.types import Bools, Ints
 from .cleaned import with_edges_once
 from .data import MeshData
 from .fit_curves import smooth_curves
+from .seeds import hole_points, region_points
 from .straight_sides import Straightness, needed_corners
 from .validate import local
 

@@ -11,8 +11,8 @@ from adaptmesh.arrangement.record import Repair, Repairs
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import Holes, refuse_holes
 from adaptmesh.domain.outline import Outline
-from adaptmesh.domain.polygon_input import shapes_of
-from adaptmesh.domain.polygons import repaired_shapes
+from adaptmesh.domain.polygons.polygon_input import shapes_of
+from adaptmesh.domain.polygons.shared_borders import repaired_shapes
 from adaptmesh.errors import DomainError
 from adaptmesh.files.located import located, only_our_errors
 from adaptmesh.io.domains.drawings import Drawing

@@ -8,7 +8,7 @@ from adaptmesh.arrangement.noding import resolve_tolerance
 from adaptmesh.arrangement.record import Repair, Repairs
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import Holes, refuse_holes
-from adaptmesh.domain.surfaces import joined_lines, seeds_of_cells
+from adaptmesh.domain.sides.surfaces import joined_lines, seeds_of_cells
 from adaptmesh.io.domains.geo import PlaneModel, samples_of
 from adaptmesh.types import Floats
 

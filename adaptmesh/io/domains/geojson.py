@@ -7,9 +7,11 @@ import os
 from pathlib import Path
 
 from adaptmesh.domain.domain import Domain
-from adaptmesh.domain.geojson_shapes import shapes_of_geojson
-from adaptmesh.domain.regions_as_polygons import regions_as_polygons
-from adaptmesh.domain.shape import Shape
+from adaptmesh.domain.polygons.geojson_shapes import shapes_of_geojson
+from adaptmesh.domain.polygons.regions_as_polygons import (
+    regions_as_polygons,
+)
+from adaptmesh.domain.polygons.shape import Shape
 from adaptmesh.errors import FormatError
 from adaptmesh.files.bounded import read_json
 from adaptmesh.files.located import located

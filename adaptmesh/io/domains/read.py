@@ -10,9 +10,9 @@ from typing import TypeAlias
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import Holes, refuse_holes
 from adaptmesh.domain.outline import Outline
-from adaptmesh.domain.polygon_input import without_empty
-from adaptmesh.domain.polygons import given_of_shapes
-from adaptmesh.domain.shape import Shape
+from adaptmesh.domain.polygons.polygon_input import without_empty
+from adaptmesh.domain.polygons.shape import Shape
+from adaptmesh.domain.polygons.shared_borders import given_of_shapes
 from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.files.located import located, only_our_errors
 from adaptmesh.io.domains.drawings.drawing import Drawing

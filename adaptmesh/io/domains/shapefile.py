@@ -15,7 +15,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from adaptmesh.domain.shape import Shape
+from adaptmesh.domain.polygons.shape import Shape
 from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.files.located import located, refusing
 from adaptmesh.files.whole import read_bytes, text_of

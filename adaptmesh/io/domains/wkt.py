@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from adaptmesh.domain.shape import Shape
+from adaptmesh.domain.polygons.shape import Shape
 from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.files.bounded import MOST_NESTED
 from adaptmesh.files.located import located

@@ -22,7 +22,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from adaptmesh.domain.surfaces import seeds_of
+from adaptmesh.domain.sides.surfaces import seeds_of
 from adaptmesh.errors import FormatError
 from adaptmesh.files.bounded import whole_number
 from adaptmesh.files.located import located

@@ -9,7 +9,7 @@ import numpy as np
 
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.projection import Projection, project, shape_of, tolerance_of
-from adaptmesh.domain.side import Sides
+from adaptmesh.domain.sides.side import Sides
 from adaptmesh.mesh.boundary_polylines import vertices_at
 from adaptmesh.mesh.polylines import Matching, followed, matched
 from adaptmesh.types import Bools, Index, Int64s

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from adaptmesh.domain.side import Image
+from adaptmesh.domain.sides.side import Image
 from adaptmesh.mesh.polylines import Polyline
 from adaptmesh.types import Floats
 

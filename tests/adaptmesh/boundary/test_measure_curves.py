@@ -9,7 +9,7 @@ import metrics
 from adaptmesh.boundary.measure_curves import inscribed_chords, measure_parts
 from adaptmesh.boundary.unit_polylines import unit_polylines
 from adaptmesh.curves import Arc, BSpline, Line, Parametric
-from adaptmesh.domain.side import SidePoints
+from adaptmesh.domain.sides.side import SidePoints
 
 STEPS = 40_001
 

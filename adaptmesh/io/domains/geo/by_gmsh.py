@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 
 from adaptmesh.curves import Arc, BSpline, Curve, Line
-from adaptmesh.domain.skeleton import extent_of
-from adaptmesh.domain.surfaces import joined_lines
+from adaptmesh.domain.sides.skeleton import extent_of
+from adaptmesh.domain.sides.surfaces import joined_lines
 from adaptmesh.errors import FormatError, FormatWarning
 from adaptmesh.io.domains.drawings.drawing import JOINED, affine_arc
 from adaptmesh.types import Floats

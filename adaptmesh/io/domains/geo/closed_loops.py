@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from adaptmesh.domain.joining import places_of
+from adaptmesh.domain.sides.joining import places_of
 from adaptmesh.errors import FormatError
 from adaptmesh.io.domains.drawings.drawing import JOINED
 from adaptmesh.types import Floats

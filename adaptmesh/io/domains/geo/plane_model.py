@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from adaptmesh.curves import Curve
-from adaptmesh.domain.coincident_curves import curves_once
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.inputs import Holes, refuse_holes
 from adaptmesh.domain.outline import Outline
-from adaptmesh.domain.skeleton import extent_of
-from adaptmesh.domain.surfaces import overlaps, seeds_of
+from adaptmesh.domain.sides.coincident_curves import curves_once
+from adaptmesh.domain.sides.skeleton import extent_of
+from adaptmesh.domain.sides.surfaces import overlaps, seeds_of
 from adaptmesh.errors import DomainError
 from adaptmesh.geometry.distance import first_of_equal
 from adaptmesh.io.domains.drawings.drawing import JOINED

@@ -21,11 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adaptmesh.curves import Curve
+from adaptmesh.domain.inputs import rows_of_each
 from adaptmesh.geometry.products import angles_between
 from adaptmesh.types import Bools, Floats, Index, Ints
 from adaptmesh.value import Value
 
-from .inputs import rows_of_each
 from .motion import Motion
 from .paths import Path, derivatives_on, points_on
 

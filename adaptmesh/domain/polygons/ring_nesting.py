@@ -7,11 +7,11 @@ import numpy as np
 from adaptmesh.arrangement.faces import find_faces
 from adaptmesh.arrangement.record import Repair
 from adaptmesh.arrangement.winding import sum_passes
+from adaptmesh.domain.inputs import OR_REPAIR
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Bools, Floats, Int64s, Ints
 
 from .face_owners import owners_of_faces
-from .inputs import OR_REPAIR
 from .rings import Ring, ring_area, ring_label
 from .shape import Shape
 

@@ -10,7 +10,7 @@ import adaptmesh as am
 from adaptmesh import ragged
 from adaptmesh.curves import Arc, BSpline, Line
 from adaptmesh.domain.projection import project
-from adaptmesh.domain.side import SideParts, SidePoints
+from adaptmesh.domain.sides.side import SideParts, SidePoints
 
 FEW = st.lists(st.tuples(st.integers(0, 3), st.integers(0, 6)), max_size=12)
 

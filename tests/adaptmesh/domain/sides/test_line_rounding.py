@@ -8,7 +8,7 @@ from reference.exact_mesh import area_of_rings
 from reference.transforms import TRANSFORMS
 
 import adaptmesh as am
-from adaptmesh.domain.line_rounding import nearest_to_lines
+from adaptmesh.domain.sides.line_rounding import nearest_to_lines
 
 TRIANGLE = np.array([(0.0, 0), (1, 0.1), (0.3, 0.8)])
 

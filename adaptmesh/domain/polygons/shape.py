@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from adaptmesh.checks import is_level
+from adaptmesh.domain.inputs import OR_REPAIR
 from adaptmesh.errors import DomainError, FormatError
 from adaptmesh.types import Floats
-
-from .inputs import OR_REPAIR
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from adaptmesh.domain.data import DomainData
 from adaptmesh.topology import regions_beside
 from adaptmesh.types import Floats
-
-from .data import DomainData
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon, Polygon

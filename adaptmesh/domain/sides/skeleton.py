@@ -11,10 +11,10 @@ import numpy as np
 from adaptmesh._core import orient2d
 from adaptmesh.checks import LARGEST, checked_points, read_only
 from adaptmesh.curves import Curve
+from adaptmesh.domain.inputs import Inside
 from adaptmesh.errors import DomainError
 from adaptmesh.types import Floats, Index, Ints
 
-from .inputs import Inside
 from .inscribed_polygon import MESH_TURN, InscribedPolygon, ends_of_paths
 from .joining import are_near, join, length_of, name_of_curve
 from .polyline import polylines_along

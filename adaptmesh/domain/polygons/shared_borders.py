@@ -18,12 +18,12 @@ from adaptmesh.arrangement.faces import Faces, find_faces
 from adaptmesh.arrangement.noding import node, resolve_tolerance
 from adaptmesh.arrangement.record import Repair, Repairs
 from adaptmesh.arrangement.winding import Passes, sum_passes
+from adaptmesh.domain.given import Given
 from adaptmesh.errors import DomainError
 from adaptmesh.topology import unique_edges, used_points
 from adaptmesh.types import Bools, Floats, Int64s
 
 from .face_owners import owners_of_faces
-from .given import Given
 from .rings import REPEATED, Rings, rings_of
 from .shape import Shape
 

@@ -8,7 +8,7 @@ import shapely
 from reference.transforms import TRANSFORMS
 
 from adaptmesh import Domain, FormatWarning, read_domain, repair
-from adaptmesh.domain.polygons import given_of_polygons
+from adaptmesh.domain.polygons.shared_borders import given_of_polygons
 from adaptmesh.errors import DomainError
 
 

@@ -9,10 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from adaptmesh.curves import Curve
+from adaptmesh.domain.inputs import rows_of_each
 from adaptmesh.types import Floats, Index
 from adaptmesh.value import Value
-
-from .inputs import rows_of_each
 
 SAMPLES = 64
 """On each part of a path, among which the place nearest to a point is looked for."""

@@ -1,0 +1,1 @@
+"""Polygons as users give them: rings, their nesting, and the borders that they share."""
