@@ -24,7 +24,7 @@ import metrics  # noqa: E402
 sys.path.append(str(Path(__file__).parent))
 
 
-FAST_CASES = 5
+FAST_CASES = 3
 """How many cases of a test are run by ``pytest -m "not slow"`` if it does not say otherwise."""
 
 
