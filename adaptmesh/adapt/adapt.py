@@ -12,9 +12,9 @@ from adaptmesh.domain.domain import Domain
 from adaptmesh.generate.generate import MAX_VERTICES, generate, graded_within_budget
 from adaptmesh.generate.prediction import predict_with_samples
 from adaptmesh.mesh.boundary_polylines import vertices_at
-from adaptmesh.mesh.checks import check_is_mesh
 from adaptmesh.mesh.cleaned import with_edges_once
 from adaptmesh.mesh.control_space import control_space_on
+from adaptmesh.mesh.data import check_is_mesh
 from adaptmesh.mesh.mesh import Mesh
 from metrics import ControlSpace
 

@@ -77,7 +77,7 @@ def generate(
         If the mesh would have more than `max_vertices` vertices.
     """
     check_is_domain(domain)
-    if placement not in PLACEMENTS:
+    if not isinstance(placement, str) or placement not in PLACEMENTS:
         raise ValueError(
             f"placement: expected one of {', '.join(map(repr, PLACEMENTS))}, got {placement!r}"
         )

@@ -4,16 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from adaptmesh.errors import DomainError
 from adaptmesh.mesh.validate.validate import InvalidMeshError
 
+from .data import check_is_mesh
 from .mesh import Mesh
-
-
-def check_is_mesh(mesh: object) -> None:
-    """Refuse what is no mesh."""
-    if not isinstance(mesh, Mesh):
-        raise DomainError(f"expected a Mesh, got {type(mesh).__name__}: generate makes one")
 
 
 def check_measurable(mesh: Mesh) -> None:

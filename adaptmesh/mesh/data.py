@@ -12,6 +12,7 @@ import numpy as np
 from adaptmesh.checks import frozen_integers, frozen_reals, numbers, plane_points, rows
 from adaptmesh.domain.domain import Domain
 from adaptmesh.domain.sides.periodic import PeriodicSides
+from adaptmesh.errors import DomainError
 from adaptmesh.geometry.areas import triangle_areas
 from adaptmesh.types import Floats, Ints
 from adaptmesh.value import FrozenMapping, Value
@@ -93,3 +94,9 @@ def _look_up(names: Mapping[str, int], name: str, kind: str) -> int:
         known = ", ".join(map(repr, names)) or "none"
         raise KeyError(f"no {kind} is named {name!r}; the names are: {known}")
     return names[name]
+
+
+def check_is_mesh(mesh: object) -> None:
+    """Refuse what is no mesh."""
+    if not isinstance(mesh, MeshData):
+        raise DomainError(f"expected a Mesh, got {type(mesh).__name__}: generate makes one")

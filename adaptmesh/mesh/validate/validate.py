@@ -8,7 +8,7 @@ The checks stand on one another:
 3. covering: the triangles cover what their border encloses once and only once;
 4. domain: every point, segment and curve of the domain is there, its regions, tags and names.
 
-Each is a function of `adaptmesh.invariants`; the tables below give their names.
+Each is a function of a file of this folder; the tables below give their names.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import numpy as np
 
 from adaptmesh.domain.domain import Domain
 from adaptmesh.errors import AdaptmeshError
-from adaptmesh.mesh.data import MeshData
+from adaptmesh.mesh.data import MeshData, check_is_mesh
 
 from . import covering, fidelity, inside, local, periodicity
 from .domain_subject import DomainSubject
@@ -194,6 +194,13 @@ def validate(mesh: MeshData, *, tolerance: float | None = None) -> Validity:
     Validity
         The verdict on each invariant, by name; true if all hold.
 
+    Raises
+    ------
+    DomainError
+        What is given is no mesh.
+    ValueError
+        The tolerance is negative or not a number.
+
     Notes
     -----
     Of the arrays, by comparison of numbers:
@@ -262,6 +269,7 @@ def validate(mesh: MeshData, *, tolerance: float | None = None) -> Validity:
     >>> validate(Mesh(corner, [[0, 2, 1]]))["positive triangles"].offenders
     ('triangle 0 is clockwise: 0 (0.0, 0.0), 2 (0.0, 1.0), 1 (1.0, 0.0)',)
     """
+    check_is_mesh(mesh)
     if tolerance is not None and not 0 <= tolerance < np.inf:
         raise ValueError(f"tolerance={tolerance!r}: expected a length, 0 or more")
     subject = Subject(mesh)

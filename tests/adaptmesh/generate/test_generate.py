@@ -1,6 +1,7 @@
 """From domain and metric to mesh: conforming, valid, named; refused early when it cannot be."""
 
 import os
+import re
 import signal
 import threading
 import time
@@ -216,9 +217,11 @@ def test_what_is_no_domain():
         am.generate([(0, 0), (1, 0), (0, 1)], 0.1)
 
 
-def test_unknown_placement(square):
-    with pytest.raises(ValueError, match=r"placement: .* got 'random'"):
-        am.generate(square, 0.1, placement="random")
+@pytest.mark.parametrize("placement", ["random", None, 1, [], {}, ["front"], np.ones(2)], ids=repr)
+def test_unknown_placement(square, placement):
+    message = rf"placement: expected .* got {re.escape(repr(placement))}"
+    with pytest.raises(ValueError, match=message):
+        am.generate(square, 0.1, placement=placement)
 
 
 # --- long work -----------------------------------------------------------------------------------

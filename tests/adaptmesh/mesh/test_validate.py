@@ -335,6 +335,12 @@ def test_corner_that_is_off_by_more_than_the_tolerance():
     assert validate(mesh, tolerance=1e4 * on_runs.TOLERANCE).ok
 
 
+@pytest.mark.parametrize("what", [None, "mesh.vtu", SQUARE, [], Domain.rectangle(0, 0, 1, 1), Mesh])
+def test_what_is_no_mesh(what):
+    with pytest.raises(am.DomainError, match=f"expected a Mesh, got {type(what).__name__}"):
+        validate(what)
+
+
 def test_tolerance_is_a_length():
     with pytest.raises(ValueError, match="tolerance=-1"):
         validate(square_mesh(), tolerance=-1)
