@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from adaptmesh.domain.inputs import rows_of_each
 from adaptmesh.domain.sides.side import SideParts, Sides
 from adaptmesh.geometry.products import angles_between, cross
 from adaptmesh.types import Floats, Index
@@ -119,10 +120,10 @@ def _on_curved(
     if len(keys):
         hit = keys[place] == asked
         u[hit] = at[first[place[hit]]]
-    for s in np.unique(side[np.isnan(u)]).tolist():
-        mine = np.isnan(u) & (side == s)
-        distance = shapely.distance(shape_of(sides, s), shapely.points(points[mine]))
-        off[mine] = distance + 2 * tolerance
+    away = np.flatnonzero(np.isnan(u))
+    for s, rows in rows_of_each(side[away]).items():
+        distance = shapely.distance(shape_of(sides, s), shapely.points(points[away[rows]]))
+        off[away[rows]] = distance + 2 * tolerance
     return u, off
 
 

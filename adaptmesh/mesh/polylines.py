@@ -12,12 +12,13 @@ sides join the same two corners, the distances of the vertices tell them apart.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from adaptmesh.domain.projection import project
+from adaptmesh.domain.projection import Projection, project
 from adaptmesh.domain.sides.side import Sides
 from adaptmesh.topology import edge_keys
 from adaptmesh.types import Floats, Index, Int64s
@@ -116,49 +117,94 @@ def matched(
     whole = np.flatnonzero((at_ends >= 0).all(axis=1))
     n = int(max(at_ends.max(initial=-1), sides.ends.max(initial=-1))) + 1
     sides_by_ends = _grouped(sides.ends, n)
+    groups = []
     for key, some in _grouped(at_ends[whole], n).items():
         mine, candidates = whole[some], sides_by_ends.get(key)
         if candidates is None:
             continue
         if len(mine) > 1 or len(candidates) > 1:
-            off = _distances(points, [polylines[k] for k in mine], candidates, sides, tolerance)
-            row, column = linear_sum_assignment(off)
-            mine, candidates = mine[row], candidates[column]
-        number[candidates] = mine
-    of_side = [
-        _directed(points, polylines[k], corner, sides, side, tolerance) if k >= 0 else None
-        for side, k in enumerate(number.tolist())
-    ]
+            groups.append((mine, candidates))
+        else:
+            number[candidates] = mine
+    tables = _distances(points, polylines, groups, sides, tolerance)
+    for (mine, candidates), off in zip(groups, tables, strict=True):
+        row, column = linear_sum_assignment(off)
+        number[candidates[column]] = mine[row]
+    of_side = [polylines[k] if k >= 0 else None for k in number.tolist()]
     taken = set(number.tolist())
-    return Matching(of_side, [p for k, p in enumerate(polylines) if k not in taken])
+    others = [p for k, p in enumerate(polylines) if k not in taken]
+    return Matching(_directed(points, of_side, corner, sides, tolerance), others)
 
 
 def _distances(
-    points: Floats, polylines: list[Polyline], candidates: Index, sides: Sides, tolerance: float
-) -> Floats:
-    """How far polylines are from sides, (p, s); one without inner vertices by its middle."""
-    out = np.empty((len(polylines), len(candidates)))
-    for i, polyline in enumerate(polylines):
-        p = points[polyline.inner]
-        if not len(p):
-            p = points[polyline.vertices].mean(axis=0, keepdims=True)
-        for j, side in enumerate(candidates.tolist()):
-            off = project(sides, np.full(len(p), side), p, tolerance).off
-            out[i, j] = off.mean() + tolerance * np.sum(off > tolerance)
-    return out
+    points: Floats,
+    polylines: list[Polyline],
+    groups: Sequence[tuple[Index, Index]],
+    sides: Sides,
+    tolerance: float,
+) -> list[Floats]:
+    """How far the polylines (p,) of each group are from its sides (s,), (p, s) for each group.
+
+    One without inner vertices is as far as its middle.
+    """
+    pairs = [
+        (k, side)
+        for mine, candidates in groups
+        for k in mine.tolist()
+        for side in candidates.tolist()
+    ]
+    places = {k: _places_along(points, polylines[k]) for k, _ in pairs}
+    projected = _projected(sides, [(side, places[k]) for k, side in pairs], tolerance)
+    off = [each.off.mean() + tolerance * np.sum(each.off > tolerance) for each in projected]
+    shapes = [(len(mine), len(candidates)) for mine, candidates in groups]
+    first = np.cumsum([0, *(p * s for p, s in shapes)])
+    return [
+        np.reshape(off[begin:end], shape)
+        for begin, end, shape in zip(first[:-1], first[1:], shapes, strict=True)
+    ]
+
+
+def _places_along(points: Floats, polyline: Polyline) -> Floats:
+    """The inner vertices, or else the middle."""
+    inner = points[polyline.inner]
+    return inner if len(inner) else points[polyline.vertices].mean(axis=0, keepdims=True)
 
 
 def _directed(
-    points: Floats, polyline: Polyline, corner: Index, sides: Sides, side: int, tolerance: float
-) -> Polyline:
-    """A polyline in the direction of its side."""
-    begin, end = sides.ends[side]
-    if begin != end:
-        return polyline if corner[polyline.vertices[0]] == begin else polyline.reversed()
-    inner = polyline.inner
-    u = project(sides, np.full(len(inner), side), points[inner], tolerance).u
-    u = u[~np.isnan(u)]
-    return polyline if np.sum(np.diff(u) > 0) >= np.sum(np.diff(u) < 0) else polyline.reversed()
+    points: Floats,
+    of_side: list[Polyline | None],
+    corner: Index,
+    sides: Sides,
+    tolerance: float,
+) -> list[Polyline | None]:
+    """The polyline of each side, in the direction of the side."""
+    is_backward = [
+        p is not None and corner[p.vertices[0]] != begin
+        for p, begin in zip(of_side, sides.ends[:, 0], strict=True)
+    ]
+    closed = np.flatnonzero(sides.ends[:, 0] == sides.ends[:, 1]).tolist()
+    asked = [(side, points[p.inner]) for side in closed if (p := of_side[side]) is not None]
+    for (side, _), (u, _) in zip(asked, _projected(sides, asked, tolerance), strict=True):
+        du = np.diff(u[~np.isnan(u)])
+        is_backward[side] = bool(np.sum(du > 0) < np.sum(du < 0))
+    return [
+        p.reversed() if p is not None and back else p
+        for p, back in zip(of_side, is_backward, strict=True)
+    ]
+
+
+def _projected(sides: Sides, asked: list[tuple[int, Floats]], tolerance: float) -> list[Projection]:
+    """For each of (side, points) the points projected on the side; all at once.
+
+    To project each apart would look through all sides each time.
+    """
+    if not asked:
+        return []
+    counts = [len(p) for _, p in asked]
+    side = np.repeat([side for side, _ in asked], counts)
+    u, off = project(sides, side, np.concatenate([p for _, p in asked]), tolerance)
+    last = np.cumsum(counts)[:-1]
+    return [Projection(*each) for each in zip(np.split(u, last), np.split(off, last), strict=True)]
 
 
 def _grouped(pairs: Index, n: int) -> dict[int, Index]:

@@ -17,6 +17,7 @@ from reference.random_meshes import right_mesh
 from reference.transforms import TRANSFORMS
 
 import adaptmesh as am
+from adaptmesh.curves import Arc, Line
 
 COUNT = int(os.environ.get("ADAPTMESH_RIGHT_MESHES", "40"))
 LARGEST_EXACT = 100  # triangles: the oracle looks at every pair
@@ -86,3 +87,32 @@ def test_a_star_takes_n_log_n():
 
     few, many = seconds(1000), seconds(4000)
     assert many < 10 * few + 0.1  # with all pairs of boxes it was 16 times as much
+
+
+def holes_of_arcs(k):
+    """A square with k² round holes, each of two arcs, turned by half a radian."""
+    a = np.pi / 2 * np.arange(4)
+    circle = 0.3 * np.stack([np.cos(a), np.sin(a)], axis=1)
+    turn = np.array([[np.cos(0.5), np.sin(0.5)], [-np.sin(0.5), np.cos(0.5)]])
+    corners = k * np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) @ turn
+    curves = [Line(p, q) for p, q in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
+    for centre in np.stack(np.meshgrid(*2 * [np.arange(k) + 0.5]), axis=-1).reshape(-1, 2):
+        p = (centre + circle) @ turn
+        curves += [Arc.through(p[0], p[1], p[2]), Arc.through(p[2], p[3], p[0])]
+    return am.Domain.from_curves(curves)
+
+
+def test_many_round_holes_take_n_log_n():
+    """The two arcs of a hole join the same two points: distances tell which polyline is which."""
+
+    def seconds(k):
+        mesh = am.generate(holes_of_arcs(k), 10.0)
+        times = []
+        for _ in range(2):
+            start = time.process_time()
+            assert mesh.validate().ok
+            times.append(time.process_time() - start)
+        return min(times)
+
+    few, many = seconds(7), seconds(14)
+    assert many < 8 * few  # 4 times as many; with each arc held against all of them 16 times

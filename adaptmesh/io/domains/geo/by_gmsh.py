@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -27,7 +28,7 @@ from adaptmesh.errors import FormatError, FormatWarning
 from adaptmesh.io.domains.drawings.drawing import JOINED, affine_arc
 from adaptmesh.types import Floats
 
-from .gmsh_script import MENTIONED, SafeScript, safe_script
+from .gmsh_script import MENTIONED, SafeScript, included_name, safe_script
 from .groups import names_of_groups
 from .plane_model import CurvesByNumber, PlaneModel, samples_of
 
@@ -70,6 +71,9 @@ def _opened(path: Path, script: SafeScript) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "script.geo"
         file.write_text(script.text, encoding="utf-8", newline="\n")
+        for number, (_, text) in enumerate(script.included):
+            copy = Path(folder) / included_name(number)
+            copy.write_text(text, encoding="utf-8", newline="\n")
         try:
             done = subprocess.run(
                 [sys.executable, "-c", program, str(file), str(SECONDS), str(MEMORY)],
@@ -92,8 +96,16 @@ def _opened(path: Path, script: SafeScript) -> dict[str, Any]:
             f"take more than {SECONDS} s or {MEMORY >> 30} GB, or be too large for Gmsh"
         ) from None
     if said["error"]:
-        raise FormatError(f"{path}: {said['error'].replace(str(file), path.name)}")
+        raise FormatError(f"{path}: {_with_own_names(said['error'], path, script)}")
     return said
+
+
+def _with_own_names(text: str, path: Path, script: SafeScript) -> str:
+    """What Gmsh says of copies, said of the files themselves."""
+    own = {"script.geo": path.name}
+    own |= {included_name(k): file.name for k, (file, _) in enumerate(script.included)}
+    copies = re.compile(r"(?:[^'\s]*[/\\])?(script|included\d+)\.geo\b")
+    return copies.sub(lambda m: own.get(f"{m[1]}.geo", m[0]), text)
 
 
 @dataclass
@@ -150,7 +162,7 @@ class _Model:
             [samples_of(c) for c in curves.curves], JOINED * extent_of(curves.curves)
         )
         faces = {
-            tag: self._face(tag, [lines[k] for k in sorted(set(curves.at(s["curves"])))])
+            tag: self._face(tag, [lines[k] for k in sorted(curves.at(s["curves"]))])
             for tag, s in self.surfaces.items()
         }
         points = {t for s in self.surfaces.values() for t in s["points_inside"]}
@@ -176,6 +188,13 @@ class _Model:
 
         if not lines:
             raise FormatError(f"{self.path}: surface {tag} has no boundary")
+        ends, count = np.unique([p[k] for p in lines for k in (0, -1)], axis=0, return_counts=True)
+        if (count % 2).any():
+            x, y = ends[count % 2 == 1][0].tolist()
+            raise FormatError(
+                f"{self.path}: the boundary of surface {tag} is not closed: a curve ends at "
+                f"({x:g}, {y:g})"
+            )
         face = shapely.build_area(shapely.MultiLineString(lines))
         if face.is_empty:
             raise FormatError(f"{self.path}: the boundary of surface {tag} is not closed")
@@ -221,7 +240,8 @@ def _arc(said: Mapping[str, Any]) -> Curve:
     """An arc of a circle through three of its points, one of an ellipse by conjugate radii."""
     first, second = (np.array(said[k])[:2] for k in ("first", "second"))
     a, b = np.hypot(*first), np.hypot(*second)
-    is_circle = abs(a - b) <= 1e-12 * a and abs(first @ second) <= 1e-12 * a * b
-    if is_circle and said["turn"] < 2 * np.pi:
+    near = SAME_RADIUS if "off" in said else 1e-12  # short arcs of circles hardly tell their radii
+    is_circle = abs(a - b) <= near * a and abs(first @ second) <= near * a * b
+    if (is_circle or said.get("off", 0) > SAME_RADIUS) and said["turn"] < 2 * np.pi:
         return Arc.through(*np.array(said["points"])[:, :2])
     return affine_arc(np.array(said["centre"])[:2], first, second, 0.0, said["turn"])

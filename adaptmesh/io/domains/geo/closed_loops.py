@@ -8,9 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from adaptmesh.domain.sides.joining import places_of
-from adaptmesh.errors import FormatError
 from adaptmesh.io.domains.drawings.drawing import JOINED
 from adaptmesh.types import Floats
+
+from .expressions import NotReadError
 
 
 def walk_of(lines: Sequence[Floats]) -> tuple[list[tuple[int, bool]], Floats | None]:
@@ -39,9 +40,10 @@ def _next_end(ends: deque[int], is_walked: Sequence[bool]) -> int | None:
     return ends[0] if ends else None
 
 
-def not_closed(surface: int, loop: int, place: Floats) -> FormatError:
+def not_closed(surface: int, loop: int, place: Floats) -> NotReadError:
+    """The error; Gmsh takes loops of several closed lines."""
     x, y = place.tolist()
-    return FormatError(
+    return NotReadError(
         f"curve loop {loop} of surface {surface} is not one closed line: no other curve of it goes "
         f"on from ({x:g}, {y:g})"
     )

@@ -11,10 +11,11 @@ script, the seconds of processor time and the bytes of memory it may take, it pr
      "periodic": [[curve, other curve], ...],
      "volumes":  number, "error": text or null}
 
-A line has its two ends; an arc of a circle or an ellipse P(s) = centre + cos(s) first + sin(s)
-second for s in (0, turn); any other curve is a cubic spline with double knots, given by
-these and control points: exactly, where it consists of cubics over equal parts of its parameter
-(Gmsh's own splines), else to `ACCURACY` of its size.
+Curves that a surface has on both sides, as slits, are listed twice. A line has its two ends; an arc
+of a circle or an ellipse P(s) = centre + cos(s) first + sin(s) second for s in (0, turn); any other
+curve is a cubic spline with double knots, given by these and control points: exactly, where it
+consists of cubics over equal parts of its parameter (Gmsh's own splines), else to `ACCURACY` of its
+size.
 """
 
 from __future__ import annotations
@@ -86,7 +87,7 @@ def _content(model: Any) -> dict[str, Any]:
         boundary = model.getBoundary([(2, tag)], combined=False, oriented=False)
         inside = model.mesh.getEmbedded(2, tag)
         surfaces[tag] = {
-            "curves": sorted({t for _, t in boundary}),
+            "curves": sorted(t for _, t in boundary),
             "curves_inside": [t for dim, t in inside if dim == 1],
             "points_inside": [t for dim, t in inside if dim == 0],
         }

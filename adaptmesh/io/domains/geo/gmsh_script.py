@@ -1,14 +1,16 @@
-"""What of a .geo script is handed to Gmsh: files it includes put in, and nothing that reaches out.
+"""What of a .geo script is handed to Gmsh: it and what it includes, and nothing that reaches out.
 
 A script can run programs and read and write files. Before Gmsh sees it,
 
-- ``Include`` and ``Merge`` of another script take in that file, if it is in the folder of the
-  script or below;
-- statements that show, print, save or mesh are left out: they say nothing about the domain;
+- ``Include`` and ``Merge`` of another script include a copy of that file, made safe in the same
+  way, if it is in the folder of the script or below;
+- statements that show, print, save, mesh or cut meshes are left out: they say nothing about the
+  domain;
 - what else reads or writes files, runs programs or makes statements of texts is refused.
 
 The words are found as Gmsh's own scanner finds them. Comments are left out and lines stay what they
-were, so that the line of an error in the script is right.
+were, so that the line of an error in the script is right; and because Gmsh remembers macros and
+loops by their lines: what follows on the same line is lost when they are called.
 """
 
 from __future__ import annotations
@@ -45,7 +47,7 @@ _TOKENS = re.compile(
 
 _LEFT_OUT_WORDS = """
 Printf Print Save Sleep Plugin View Draw Background General Solver PostProcessing OptimizeMesh
-RefineMesh RecombineMesh SetOrder Warning
+RefineMesh RecombineMesh SetOrder Warning Levelset
 """
 _LEFT_OUT = frozenset(_LEFT_OUT_WORDS.split())
 _REFUSED_WORDS = """
@@ -56,7 +58,7 @@ Levelset ExternalProcess
 _REFUSED = frozenset(_REFUSED_WORDS.split())
 _ONLY_COMMANDS = frozenset(["Merge", "Printf", "Print", "Save", "Plugin"])
 """Words that read or write files, and have to begin a statement to be seen."""
-MENTIONED = frozenset(["Merge", "Print", "Save", "Plugin", "View", "Mesh"])
+MENTIONED = frozenset(["Merge", "Print", "Save", "Plugin", "View", "Mesh", "Levelset"])
 """Of what is left out: that of which somebody may want to know."""
 
 _BEFORE_STATEMENTS = frozenset([";", "}", ")", "EndIf", "EndFor", "Else", "Return"])
@@ -76,31 +78,43 @@ class SafeScript:
     Attributes
     ----------
     text : str
+    included : list of (Path, str)
+        The files that it includes, as often as they are, and their texts; the first is to be named
+        as `included_name` says, and so on.
     left_out : dict of str to int
         First words of statements that are not in it, and the line of the first of each.
     """
 
     text: str = ""
+    included: list[tuple[Path, str]] = field(default_factory=list)
     left_out: dict[str, int] = field(default_factory=dict)
+
+
+def included_name(number: int) -> str:
+    """The name by which a script includes its file of this number, counted from 0."""
+    return f"included{number}.geo"
 
 
 def safe_script(path: Path) -> SafeScript:
     """Read a script and what it includes; a `FormatError` names what may not be in it."""
     out = SafeScript()
     expander = _Expander(path.resolve().parent, out)
-    out.text = "".join(expander.expanded(path, 0)) + "\n"  # Gmsh drops a last line without an end
+    out.text = expander.text_of(path, 0)
     return out
 
 
 class _Expander:
-    """Puts included files into the text, and looks at each word."""
+    """Takes in included files, and looks at each word."""
 
     def __init__(self, folder: Path, out: SafeScript) -> None:
         self._folder, self._out = folder, out
         self._size = self._files = 0
 
-    def expanded(self, path: Path, depth: int) -> Iterator[str]:
-        """The pieces of a file; an included one is on the line where it is included."""
+    def text_of(self, path: Path, depth: int) -> str:
+        """A file as it is handed to Gmsh."""
+        return "".join(self._pieces(path, depth)) + "\n"  # a last line without an end is dropped
+
+    def _pieces(self, path: Path, depth: int) -> Iterator[str]:
         tokens = self._tokens_of(path, depth)
         at, before = 0, ";"
         while at < len(tokens):
@@ -136,13 +150,15 @@ class _Expander:
         return list(_tokens(path, text))
 
     def _included(self, path: Path, statement: list[_Token], depth: int) -> Iterator[str]:
-        """A file that is included, in one line; nothing of a view, which only says sizes."""
+        """The statement that includes a copy; nothing of a view, which only says sizes."""
         word, line = statement[0].text, statement[0].line
         file = self._named_file(path, statement)
         if word == "Merge" and file.suffix.lower() in _VIEWS:
             self._out.left_out.setdefault(word, line)
         else:
-            yield from (" " if "\n" in piece else piece for piece in self.expanded(file, depth + 1))
+            text = self.text_of(file, depth + 1)
+            yield f'Include "{included_name(len(self._out.included))}";'
+            self._out.included.append((file, text))
         yield _newlines(statement)
 
     def _named_file(self, path: Path, statement: list[_Token]) -> Path:

@@ -9,7 +9,7 @@ import pytest
 from adaptmesh import generate, read_domain
 from adaptmesh.errors import DomainError, FormatError, FormatWarning
 from adaptmesh.io.domains.geo import by_gmsh, model
-from adaptmesh.io.domains.geo.gmsh_script import safe_script
+from adaptmesh.io.domains.geo.gmsh_script import included_name, safe_script
 from adaptmesh.io.domains.geo.script import script_of
 
 needs_gmsh = pytest.mark.skipif(not by_gmsh.is_installed(), reason="gmsh is not there")
@@ -273,8 +273,96 @@ def test_included_files(tmp_path):
     written(tmp_path, 'Include "inner/more.geo"; a = 1;\n', "first.geo")
     path = written(tmp_path, '\nInclude "first.geo";\nMerge "inner/more.geo";\nd = 4;')
     script = safe_script(path)
-    assert " ".join(script.text.split()) == "b = 2; c = 3; a = 1; b = 2; c = 3; d = 4;"
-    assert script.text.split("\n").index("d = 4;") == 3  # lines of the script stay
+    assert [file.name for file, _ in script.included] == ["more.geo", "first.geo", "more.geo"]
+    assert [text.split() for _, text in script.included[::2]] == 2 * [
+        ["b", "=", "2;", "c", "=", "3;"]
+    ]
+    assert script.included[1][1].startswith(f'Include "{included_name(0)}";')
+    lines = [line.strip() for line in script.text.split("\n")]
+    assert lines[1:4] == [f'Include "{included_name(k)}";' for k in (1, 2)] + ["d = 4;"]
+
+
+TILES = """
+Function Tile
+  p = newp; Point(p) = {x, y, 0}; Point(p+1) = {x+1, y, 0}; Point(p+2) = {x+1, y+1, 0};
+  Point(p+3) = {x, y+1, 0}; l = newl;
+  For i In {0:3}
+    Line(l+i) = {p+i, p+(i+1)%4};
+  EndFor
+  k = newll; Line Loop(k) = {l:l+3}; s = news; Plane Surface(s) = {k}; tiles() += s;
+Return
+"""
+
+
+@needs_gmsh
+def test_included_macros_and_loops(tmp_path):
+    """Gmsh finds them again by their lines: to put all in one line lost what followed."""
+    written(tmp_path, TILES, "tile.inc")
+    row = "For j In {0:2}\n  x = 2*j;\n  Call Tile;\nEndFor\n"
+    written(tmp_path, row, "row.inc")
+    written(tmp_path, row, "row.geo")
+    path = written(
+        tmp_path,
+        'tiles() = {};\nInclude "tile.inc";\ny = 0;\nInclude "row.inc";\ny = 5;\n'
+        'Merge "row.geo";\nPhysical Surface("all") = tiles();',
+    )
+    domain = read_domain(path)
+    assert domain.area == pytest.approx(6, rel=1e-12)
+    assert list(domain.region_names) == ["all"]
+    extent = domain.points.min(axis=0).tolist() + domain.points.max(axis=0).tolist()
+    assert extent == pytest.approx([0, 0, 5, 6])
+
+
+@needs_gmsh
+def test_errors_name_the_included_file(tmp_path):
+    written(tmp_path, "a = 1;\n\nb = nowhere;\n", "parts.inc")
+    path = written(tmp_path, SQUARE + 'Include "parts.inc";')
+    with pytest.raises(FormatError, match=r"'parts\.inc', line 3"):
+        read_domain(path)
+
+
+@needs_gmsh
+def test_a_loop_of_several_closed_lines(tmp_path):
+    """The outline and a hole in one loop: our reader passes it on."""
+    hole = (
+        SQUARE.split("Curve Loop")[0]
+        + """
+Point(5) = {.25, .25, 0}; Point(6) = {.75, .25, 0}; Point(7) = {.5, .75, 0};
+Line(5) = {5, 6}; Line(6) = {6, 7}; Line(7) = {7, 5};
+Curve Loop(1) = {1:7}; Plane Surface(1) = {1};
+"""
+    )
+    assert read_domain(written(tmp_path, hole)).area == pytest.approx(0.875, rel=1e-12)
+
+
+@needs_gmsh
+def test_a_loop_with_a_slit(tmp_path):
+    """A line there and back is no end of the boundary; it stays a line of the domain."""
+    slit = (
+        SQUARE.split("Curve Loop")[0]
+        + """
+Point(5) = {.5, .5, 0}; Line(5) = {1, 5};
+Curve Loop(1) = {5, -5, 1:4}; Plane Surface(1) = {1}; Physical Curve("slit") = {5};
+"""
+    )
+    domain = read_domain(written(tmp_path, slit))
+    assert domain.area == pytest.approx(1, rel=1e-12)
+    assert list(domain.names) == ["slit"]
+
+
+@needs_gmsh
+@pytest.mark.parametrize("more", ["", "Translate {1, 0, 0} {Point{1:7};}"])
+def test_a_loop_with_a_line_that_ends(tmp_path, more):
+    open_end = (
+        SQUARE.split("Curve Loop")[0]
+        + f"""
+Point(5) = {{.25, .25, 0}}; Point(6) = {{.75, .25, 0}}; Point(7) = {{.5, .75, 0}};
+Line(5) = {{5, 6}}; Line(6) = {{6, 7}};
+Curve Loop(1) = {{1:6}}; Plane Surface(1) = {{1}}; {more}
+"""
+    )
+    with pytest.raises(FormatError, match="surface 1 is not closed: a curve ends at"):
+        read_domain(written(tmp_path, open_end))
 
 
 OUTSIDE = "outside.geo"
@@ -339,13 +427,30 @@ def test_what_is_left_out(tmp_path):
         'Printf("a; }") >> "made"; Save "made";\nPrint.Background = 1; Mesh 2;'
         " Mesh.Algorithm = 6;\n"
         'View "v" {\n SP(0, 0, 0){1}; };\nPlugin(Skin).Run; Background Field = 1; '
-        "General.Terminal = 1; /* Save */ x = 1;",
+        "General.Terminal = 1; /* Save */ Levelset Sphere (2) = {{0, 0, 0}, -10};\n"
+        "Levelset CutMeshTri {2}; x = 1;",
     )
     script = safe_script(path)
     assert script.text.split() == ["Mesh.Algorithm", "=", "6;", "x", "=", "1;"]
     assert script.left_out["Save"] == 1
     assert script.left_out["View"] == 3
-    assert script.text.count("\n") == 5
+    assert script.text.count("\n") == 6
+
+
+@needs_gmsh
+@pytest.mark.parametrize("turn", [0.002, 0.02, 0.2])
+def test_short_arcs_that_miss_their_ends_meet(tmp_path, turn):
+    """A short arc tells little of its radius: it was taken for one of an ellipse, unjoined."""
+    x, y = 1.00003 * np.array([np.cos(turn), np.sin(turn)])
+    path = written(
+        tmp_path,
+        f"""Point(1) = {{0, 0, 0}}; Point(2) = {{1, 0, 0}}; Point(3) = {{{x:.17g}, {y:.17g}, 0}};
+Point(4) = {{.5, 0, 0}}; Circle(1) = {{2, 1, 3}}; Line(2) = {{3, 4}}; Line(3) = {{4, 2}};
+Curve Loop(1) = {{1:3}}; Plane Surface(1) = {{1}}; Translate {{2, 1, 0}} {{Point{{1:4}};}}""",
+    )
+    with pytest.warns(FormatWarning, match="not equally far"):
+        domain = read_domain(path)
+    assert domain.area == pytest.approx(turn / 2 - np.sin(turn) / 4, rel=1e-3)
 
 
 @needs_gmsh
