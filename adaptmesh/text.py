@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from io import StringIO
-
-from rich.console import Console, RenderableType
+from typing import TYPE_CHECKING
 
 from .types import Floats
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 USUAL, ALL = 5, 17
 """Digits that a coordinate has if nothing asks for more, and that a double has."""
@@ -29,6 +31,8 @@ def place_text(point: Sequence[float] | Floats, length: float) -> str:
 
 def plain(renderable: RenderableType, width: int) -> str:
     """Text without colours, nor blanks at the ends of lines."""
+    from rich.console import Console
+
     console = Console(file=StringIO(), width=width, color_system=None, highlight=False)
     with console.capture() as text:
         console.print(renderable)
@@ -37,6 +41,8 @@ def plain(renderable: RenderableType, width: int) -> str:
 
 def html(renderable: RenderableType, width: int) -> str:
     """A block of HTML with the styles in it."""
+    from rich.console import Console
+
     console = Console(file=StringIO(), width=width, record=True, highlight=False)
     console.print(renderable)
     frame = '<pre style="line-height:1.2;font-family:monospace">{code}</pre>'

@@ -13,7 +13,6 @@ from adaptmesh.files.notes import Notes
 from adaptmesh.mesh.mesh import Mesh
 from adaptmesh.types import Floats, Int64s
 
-from . import view
 from .archive import OnDisk, name_damage, write_snapshot
 from .base_history import BaseHistory, PathLike
 from .iteration import Iteration, counts_of, errors_of, file_name
@@ -128,18 +127,24 @@ class History(BaseHistory, Sequence[Iteration]):
         -------
         matplotlib.figure.Figure
         """
+        from . import view  # which loads rich, a tenth of a second
+
         figure = view.draw(self.iterations)
         if path is not None:
             figure.savefig(path, dpi=150)
         return figure
 
     def __str__(self) -> str:
+        from . import view
+
         return view.as_text(self.iterations, self._end())
 
     def __repr__(self) -> str:
         return f"<History: {len(self)} iterations; {self.reason or 'not ended'}>"
 
     def _repr_html_(self) -> str:
+        from . import view
+
         return view.as_html(self.iterations, self._end())
 
     def _end(self) -> str:

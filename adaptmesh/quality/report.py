@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.console import RenderableType
 
 from adaptmesh.mesh.checks import check_measurable
 from adaptmesh.mesh.control_space import control_space_on
@@ -19,7 +18,9 @@ from metrics.topology import mesh_edges
 
 from .figures import Figures, Histogram, WorstEdge, WorstTriangle
 from .reasons import MET, Reasons
-from .report_text import as_html, as_renderable, as_text
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 __all__ = ["Histogram", "Report", "WorstEdge", "WorstTriangle", "measure"]
 
@@ -74,13 +75,21 @@ class Report(Figures):
         from a mesh (see `Mesh.to_domain`); else empty.
     """
 
+    # rich takes a tenth of a second to import: only where a report is shown.
+
     def __str__(self) -> str:
+        from .report_text import as_text
+
         return as_text(self)
 
     def _repr_html_(self) -> str:
+        from .report_text import as_html
+
         return as_html(self)
 
     def __rich__(self) -> RenderableType:
+        from .report_text import as_renderable
+
         return as_renderable(self)
 
 
