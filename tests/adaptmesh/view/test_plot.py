@@ -356,7 +356,8 @@ def test_path_refused(tmp_path):
 def test_nothing_heavy_is_loaded_with_the_package():
     script = (
         "import adaptmesh.view.plot, adaptmesh.quality.report, adaptmesh.convert, sys;"
-        "print([m for m in ('pyvista', 'vtkmodules', 'matplotlib', 'shapely', 'rich') if m in sys.modules])"
+        "heavy = ('pyvista', 'vtkmodules', 'matplotlib', 'shapely', 'rich');"
+        "print([m for m in heavy if m in sys.modules])"
     )
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
