@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from adaptmesh.types import Floats
 
@@ -15,14 +16,9 @@ def longer_side(points: Floats) -> float:
     One of its sides lies along an edge of the convex hull. Of several rectangles of one area, the
     longest counts. For a rectangle along the axes it is the larger extent, to the bit.
     """
-    import shapely
-
     places = points - points.min(axis=0)
     scale = float(places.max())
-    ring = shapely.multipoints(places / scale).convex_hull.exterior
-    hull = shapely.get_coordinates(ring)[:-1]
-    if not shapely.is_ccw(ring):
-        hull = hull[::-1]
+    hull = places[ConvexHull(places / scale).vertices] / scale  # anticlockwise
     edges = np.roll(hull, -1, axis=0) - hull
     angles = np.arctan2(edges[:, 1], edges[:, 0])
     first = int(angles.argmin())

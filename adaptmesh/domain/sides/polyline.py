@@ -347,6 +347,9 @@ class _Refinement:
 
 def _looked_at(sides: Sides, points: Floats, side: Index, u: Floats, ends: Index) -> Edges:
     """Edges, and how they lie to their curves, from samples of these."""
+    if not len(side):  # nothing is curved
+        nothing = np.empty(0)
+        return Edges(side, u, ends, nothing, nothing, nothing, np.empty(0, object))
     import shapely
 
     at = u[:, :1] + np.linspace(0, 1, STEPS + 1) * (u[:, 1:] - u[:, :1])
