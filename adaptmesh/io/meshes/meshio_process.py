@@ -8,17 +8,14 @@ from __future__ import annotations
 
 import io
 import json
-import os
-import subprocess
-import sys
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from adaptmesh.errors import FormatError
+from adaptmesh.files.own_process import ask_program
 from adaptmesh.mesh.meshio_parts import Parts
 from adaptmesh.types import Array
 
@@ -58,29 +55,16 @@ def _run(task: str, kind: str, file: Path, size: int) -> str:
     """Let the program work; what meshio has said."""
     seconds = SECONDS + SECONDS_PER_MEGABYTE * (size >> 20)
     memory = max(MEMORY, MEMORY_TIMES * size)
-    program = Path(__file__).with_name("meshio_program.py").read_text(encoding="utf-8")
-    threads = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), "1")
-    try:
-        done = subprocess.run(
-            [sys.executable, "-c", program, task, kind, file.name, str(seconds), str(memory)],
-            cwd=file.parent,
-            env={**os.environ, **threads, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            timeout=4 * seconds,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        raise FormatError(f"meshio has not done it after {4 * seconds} s") from None
-    except OSError as error:
-        raise FormatError(f"meshio cannot be started: {error}") from None
-    try:
-        answer: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
-    except (ValueError, IndexError):
-        raise FormatError(
-            f"meshio ended without a result (exit code {done.returncode}): the file is damaged, or "
-            f"would take more than {seconds} s or {memory >> 20} MiB"
-        ) from None
+    answer = ask_program(
+        Path(__file__).with_name("meshio_program.py"),
+        [task, kind, file.name, seconds, memory],
+        file.parent,
+        4 * seconds,
+        who="meshio",
+        late="done it",
+        no_answer=f"the file is damaged, or would take more than {seconds} s or {memory >> 20} MiB",
+        environment=dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), "1"),
+    )
     if answer["error"]:
         raise FormatError(
             f"meshio, which reads and writes {kind}, refuses it: {answer['error']}".replace(

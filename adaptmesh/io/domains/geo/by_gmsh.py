@@ -7,11 +7,7 @@ Gmsh works in a process of its own (`gmsh_program`), on a script that reaches no
 from __future__ import annotations
 
 import importlib.util
-import json
-import os
 import re
-import subprocess
-import sys
 import tempfile
 import warnings
 from collections.abc import Mapping
@@ -25,6 +21,7 @@ from adaptmesh.curves import Arc, BSpline, Curve, Line
 from adaptmesh.domain.sides.skeleton import extent_of
 from adaptmesh.domain.sides.surfaces import joined_lines
 from adaptmesh.errors import FormatError, FormatWarning
+from adaptmesh.files.own_process import ask_program
 from adaptmesh.io.domains.drawings.drawing import JOINED, affine_arc
 from adaptmesh.types import Floats
 
@@ -67,34 +64,22 @@ def read_by_gmsh(path: Path) -> PlaneModel:
 
 def _opened(path: Path, script: SafeScript) -> dict[str, Any]:
     """What the program says about a script."""
-    program = Path(__file__).with_name("gmsh_program.py").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "script.geo"
         file.write_text(script.text, encoding="utf-8", newline="\n")
         for number, (_, text) in enumerate(script.included):
             copy = Path(folder) / included_name(number)
             copy.write_text(text, encoding="utf-8", newline="\n")
-        try:
-            done = subprocess.run(
-                [sys.executable, "-c", program, str(file), str(SECONDS), str(MEMORY)],
-                cwd=folder,
-                env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-                stdin=subprocess.DEVNULL,
-                capture_output=True,
-                timeout=2 * SECONDS,
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            raise FormatError(f"{path}: Gmsh has not read it after {2 * SECONDS} s") from None
-        except OSError as error:
-            raise FormatError(f"{path}: Gmsh cannot be started: {error}") from None
-    try:
-        said: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
-    except (ValueError, IndexError):
-        raise FormatError(
-            f"{path}: Gmsh ended without a result (exit code {done.returncode}): the script may "
-            f"take more than {SECONDS} s or {MEMORY >> 30} GB, or be too large for Gmsh"
-        ) from None
+        said = ask_program(
+            Path(__file__).with_name("gmsh_program.py"),
+            [file, SECONDS, MEMORY],
+            Path(folder),
+            2 * SECONDS,
+            who=f"{path}: Gmsh",
+            late="read it",
+            no_answer=f"the script may take more than {SECONDS} s or {MEMORY >> 30} GB, or be too "
+            "large for Gmsh",
+        )
     if said["error"]:
         raise FormatError(f"{path}: {_with_own_names(said['error'], path, script)}")
     return said
