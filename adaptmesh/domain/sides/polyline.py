@@ -247,9 +247,8 @@ class _Refinement:
         """Edges that turn too much, have a foreign vertex beside them, or cross another line."""
         none: Index = np.empty(0, np.intp)
         bad = np.flatnonzero(self.edges.turn > max_turn * (1 + 1e-9))
-        if len(bad) or not len(
-            self.edges.u
-        ):  # the others would look at curves that are not resolved yet
+        # With edges that turn too much, the rest would look at curves that are not resolved yet.
+        if len(bad) or not len(self.edges.u):
             return Faults(bad, (none, none), (none, none))
         beside, crossed = self._beside_vertices(), self._crossing()
         return Faults(np.unique(np.concatenate([beside[0], crossed[0]])), beside, crossed)
